@@ -1,7 +1,6 @@
 set(frame_limit_bytes 2048)
 set(depth_limit_bytes 8192)
 
-# The compiler's calls of memory functions, and a square root where the processor has none.
 set(allowed_symbols memcpy memmove memset memcmp)
 
 target_compile_options(tapemark_objects PRIVATE -fcallgraph-info=su)
