@@ -1,0 +1,110 @@
+#include "bars.h"
+
+#include "real.h"
+
+enum {
+    PITCH = TAPEMARK_CM_PITCH_MODULES,
+    BAR_FIRST = 4,   /* modules from the finder's centre: the light one before the bars */
+    BAR_SAMPLES = 10 /* light, dark, … four bars, then two of the quiet zone */
+};
+
+/* Lines across the tape, in modules from its middle. The outermost rows are left out: the bottom one is dark in
+ * light CMs too, and both are the first to be mixed with what lies beside the tape. */
+enum { LINES = 9 };
+static const float line_v[LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f, 1.65f, 2.2f};
+
+/* A line counts when its samples correlate with ideal bars at both ends by this much. */
+static const float line_bars_min = 0.3f;
+
+static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)
+{
+    float sum = 0, squares = 0, dark = 0;
+    for (int i = 0; i < BAR_SAMPLES; i++) {
+        const float reach = stretch * (float)(BAR_FIRST + i);
+        const tmi_point at = tmi_project(place.map, place.u + place.direction * reach, v);
+        const float value = tmi_sample(view, at.x, at.y);
+        sum += value;
+        squares += value * value;
+        if ((i & 1) && i < 8)
+            dark += value;
+    }
+    *reads += BAR_SAMPLES;
+    const float n = BAR_SAMPLES, darks = 4;
+    const float variance = squares - sum * sum / n;
+    const float difference = (sum - dark) / (n - darks) - dark / darks;
+    return variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
+}
+
+/* Bars lie beyond what the homography was measured on, and the paper may stretch: the best of three scales. */
+static float best_stretch(const tmi_view *view, tmi_bars_place place, float *score, uint32_t *reads)
+{
+    static const float stretches[3] = {0.96f, 1, 1.04f};
+    float best = 1;
+    *score = -1;
+    for (int s = 0; s < 3; s++) {
+        float sum = 0;
+        for (int i = 0; i < LINES; i += 2)
+            sum += bars_on_line(view, place, stretches[s], line_v[i], reads);
+        if (sum * (1.0f / 5) > *score) {
+            *score = sum * (1.0f / 5);
+            best = stretches[s];
+        }
+    }
+    return best;
+}
+
+float tmi_bars_score(const tmi_view *view, tmi_bars_place place, uint32_t *reads)
+{
+    float score;
+    best_stretch(view, place, &score, reads);
+    return score;
+}
+
+/* Whether a block is light on this line: its mean against the middle between the light and dark of the finders
+ * on both sides. */
+static bool block_is_light(const tmi_reader *reader, const tmi_segment *segment, int cm, float v)
+{
+    float sum = 0;
+    for (int column = 1; column < TAPEMARK_CELL_COLUMNS; column++) {
+        const tmi_point at = tmi_project(&segment->maps[cm], (float)(5 + column), v);
+        sum += tmi_sample(reader->view, at.x, at.y);
+    }
+    reader->result->stats.work += TAPEMARK_CELL_COLUMNS - 1;
+    const tmi_finder *left = &segment->finders[cm], *right = left + 1;
+    const float middle = 0.25f * (left->dark + left->light + right->dark + right->light);
+    return sum > middle * (TAPEMARK_CELL_COLUMNS - 1);
+}
+
+void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, tmi_tm_reading *out)
+{
+    uint32_t *reads = &reader->result->stats.work;
+    const tmi_bars_place left = {&segment->maps[first], 0, -1};
+    const tmi_bars_place right = {&segment->maps[first + count - 1], PITCH, 1};
+    float score_left, score_right;
+    const float stretch_left = best_stretch(reader->view, left, &score_left, reads);
+    const float stretch_right = best_stretch(reader->view, right, &score_right, reads);
+    out->bars = real_min(score_left, score_right);
+    uint32_t codes[LINES];
+    int lines = 0;
+    for (int i = 0; i < LINES; i++) {
+        const float v = line_v[i];
+        if (bars_on_line(reader->view, left, stretch_left, v, reads) < line_bars_min ||
+            bars_on_line(reader->view, right, stretch_right, v, reads) < line_bars_min)
+            continue;
+        uint32_t code = 0;
+        for (int cm = first; cm < first + count; cm++)
+            code = code << 1 | block_is_light(reader, segment, cm, v);
+        codes[lines++] = code;
+    }
+    int most = 0;
+    for (int i = 0; i < lines; i++) {
+        int same = 0;
+        for (int j = 0; j < lines; j++)
+            same += codes[j] == codes[i];
+        if (same > most) {
+            most = same;
+            out->code = codes[i];
+        }
+    }
+    out->vote = lines > LINES / 3 ? (float)most / (float)lines : 0;
+}

@@ -1,0 +1,335 @@
+#include "finder.h"
+
+#include "least_squares.h"
+#include "real.h"
+
+/* ---- Rays from the core outwards -------------------------------------------------------------------- */
+
+enum { RAYS = 16, RAY_SAMPLES = 72 };
+
+static const tmi_point ray_direction[RAYS] = {
+    {1, 0}, {.923880f, .382683f}, {.707107f, .707107f}, {.382683f, .923880f},
+    {0, 1}, {-.382683f, .923880f}, {-.707107f, .707107f}, {-.923880f, .382683f},
+    {-1, 0}, {-.923880f, -.382683f}, {-.707107f, -.707107f}, {-.382683f, -.923880f},
+    {0, -1}, {.382683f, -.923880f}, {.707107f, -.707107f}, {.923880f, -.382683f},
+};
+
+typedef struct ray_walk {
+    const tmi_view *view;
+    tmi_point start, step;
+    float value[RAY_SAMPLES];
+} ray_walk;
+
+/* Index at which the samples from..to pass `level`, between samples. */
+static float level_passed(const float *value, int from, int to, float level)
+{
+    const bool rising = value[to] > value[from];
+    int i = from + 1;
+    while (i < to && (rising ? value[i] < level : value[i] > level))
+        i++;
+    const float change = value[i] - value[i - 1];
+    return (float)(i - 1) + (change != 0 ? (level - value[i - 1]) / change : 0.5f);
+}
+
+/* Follows one ray over core, light ring and dark ring. Returns the distance to the dark ring's outer edge, in
+ * samples, put together from all three edges at 1.5, 2.5 and 3.5 modules; 0 where they are not there or not in
+ * proportion. */
+static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
+{
+    int extreme_at[4], found = 0, at = 0; /* core, light ring, dark ring, light margin */
+    float edge[3];
+    int i = 0;
+    for (; i < RAY_SAMPLES && found < 4; i++) {
+        const float v = walk->value[i] = tmi_sample(walk->view, walk->start.x + (float)i * walk->step.x,
+                                                    walk->start.y + (float)i * walk->step.y);
+        const bool seeking_light = found & 1;
+        if (seeking_light ? v >= walk->value[at] : v <= walk->value[at])
+            at = i;
+        else if (seeking_light ? v < walk->value[at] - swing : v > walk->value[at] + swing) {
+            extreme_at[found++] = at;
+            at = i;
+        }
+        /* The margin need not end: three more modules of it are enough. */
+        if (found == 3 && 2.33f * (float)(i - extreme_at[2]) > (float)extreme_at[2])
+            extreme_at[found++] = at;
+    }
+    *reads += (uint32_t)i;
+    if (found < 4)
+        return 0;
+    for (int k = 0; k < 3; k++)
+        edge[k] = level_passed(walk->value, extreme_at[k], extreme_at[k + 1],
+                               0.5f * (walk->value[extreme_at[k]] + walk->value[extreme_at[k + 1]]));
+    const float module = (1.5f * edge[0] + 2.5f * edge[1] + 3.5f * edge[2]) * (1 / (2.25f + 6.25f + 12.25f));
+    const float slack = 0.55f * module + 0.4f;
+    for (int k = 0; k < 3; k++)
+        if (real_abs(edge[k] - (1.5f + (float)k) * module) > slack)
+            return 0;
+    return 3.5f * module;
+}
+
+static float cast_ray(const tmi_view *view, tmi_point start, tmi_point direction, float step_px, float swing,
+                      uint32_t *reads)
+{
+    ray_walk walk = {.view = view, .start = start, .step = {direction.x * step_px, direction.y * step_px}};
+    return step_px * ray_reach(&walk, swing, reads);
+}
+
+/* The middle between the core's two edges up and down, then left and right: from anywhere within the core this
+ * lands near its centre. False when there is no core around. */
+static bool centre_in_core(const tmi_view *view, tmi_point *start, float step_px, float swing, uint32_t *reads)
+{
+    static const int order[4][2] = {{4, 12}, {0, 8}, {4, 12}, {0, 8}};
+    for (int k = 0; k < 4; k++) {
+        float reach[2];
+        for (int side = 0; side < 2; side++) {
+            const tmi_point d = ray_direction[order[k][side]];
+            const float core = tmi_sample(view, start->x, start->y) + swing;
+            int i = 1;
+            float before = core - swing, now = before;
+            for (; i < RAY_SAMPLES; i++, before = now) {
+                now = tmi_sample(view, start->x + (float)i * step_px * d.x, start->y + (float)i * step_px * d.y);
+                if (now > core)
+                    break;
+            }
+            *reads += (uint32_t)i;
+            if (i == RAY_SAMPLES)
+                return false;
+            reach[side] = step_px * ((float)i - (now - core) / (now - before));
+        }
+        const float shift = 0.5f * (reach[0] - reach[1]);
+        start->x += shift * ray_direction[order[k][0]].x;
+        start->y += shift * ray_direction[order[k][0]].y;
+    }
+    return true;
+}
+
+/* ---- From the rays to a square ----------------------------------------------------------------------- */
+
+typedef struct outline {
+    float x[RAYS], y[RAYS]; /* of the dark ring's outer edge, from the start point */
+} outline;
+
+/* Missing rays take the mean of the next ones on both sides; more than five missing is no finder. */
+static bool close_gaps(const float *reach, outline *out)
+{
+    int missing = 0;
+    for (int i = 0; i < RAYS; i++)
+        missing += reach[i] == 0;
+    if (missing > 5)
+        return false;
+    for (int i = 0; i < RAYS; i++) {
+        float r = reach[i];
+        if (r == 0) {
+            int before = i, after = i;
+            while (reach[before] == 0)
+                before = (before + RAYS - 1) % RAYS;
+            while (reach[after] == 0)
+                after = (after + 1) % RAYS;
+            r = 0.5f * (reach[before] + reach[after]);
+        }
+        out->x[i] = r * ray_direction[i].x;
+        out->y[i] = r * ray_direction[i].y;
+    }
+    return true;
+}
+
+typedef struct moments {
+    float x, y;        /* centroid */
+    float xx, xy, yy;  /* covariance */
+} moments;
+
+/* Area moments of the outline as a polygon. They follow an affine map exactly, so that a sheared square can be
+ * told from them: its covariance is (side)^2 / 12 times the identity, mapped. */
+static bool outline_moments(const outline *out, moments *m)
+{
+    float area = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (int i = 0; i < RAYS; i++) {
+        const float x0 = out->x[i], y0 = out->y[i], x1 = out->x[(i + 1) % RAYS], y1 = out->y[(i + 1) % RAYS];
+        const float w = x0 * y1 - x1 * y0;
+        area += w;
+        x += w * (x0 + x1);
+        y += w * (y0 + y1);
+        xx += w * (x0 * x0 + x0 * x1 + x1 * x1);
+        yy += w * (y0 * y0 + y0 * y1 + y1 * y1);
+        xy += w * (x0 * y0 + 0.5f * (x0 * y1 + x1 * y0) + x1 * y1);
+    }
+    if (!(area > 0))
+        return false;
+    m->x = x / (3 * area);
+    m->y = y / (3 * area);
+    m->xx = xx / (6 * area) - m->x * m->x;
+    m->yy = yy / (6 * area) - m->y * m->y;
+    m->xy = xy / (6 * area) - m->x * m->y;
+    return m->xx * m->yy - m->xy * m->xy > 1e-3f;
+}
+
+/* The turn of the square within its whitened outline: the distance from the centre varies four times around,
+ * and is largest at the corners. Returns the unit vector of the side's normal. */
+static tmi_point square_turn(const outline *out, const moments *m, const float inverse[3])
+{
+    float re = 0, im = 0;
+    for (int i = 0; i < RAYS; i++) {
+        const float px = out->x[i] - m->x, py = out->y[i] - m->y;
+        const float x = inverse[0] * px + inverse[1] * py, y = inverse[1] * px + inverse[2] * py;
+        const float r2 = x * x + y * y;
+        if (r2 < 1e-6f)
+            continue;
+        const float c2 = (x * x - y * y) / r2, s2 = 2 * x * y / r2, r = real_sqrt(r2);
+        re += r * (c2 * c2 - s2 * s2);
+        im += r * 2 * s2 * c2;
+    }
+    /* Sides lie opposite to corners: the angle of (-re, -im), divided by four. */
+    tmi_point turn = {-re, -im};
+    for (int halving = 0; halving < 2; halving++) {
+        const float length = real_sqrt(turn.x * turn.x + turn.y * turn.y);
+        if (!(length > 0))
+            return (tmi_point){1, 0};
+        const float c = real_sqrt(real_max(0, 0.5f * (1 + turn.x / length)));
+        const float s = real_sqrt(real_max(0, 0.5f * (1 - turn.x / length)));
+        turn = (tmi_point){c, turn.y < 0 ? -s : s};
+    }
+    return turn;
+}
+
+static void square_from_moments(const moments *m, const outline *out, tmi_point start, tmi_finder *finder)
+{
+    /* Symmetric square root of covariance * 12 / 7^2: the shape of one module, up to its turn. */
+    const float k = 12.0f / 49;
+    const float a = k * m->xx, b = k * m->xy, d = k * m->yy;
+    const float root_det = real_sqrt(a * d - b * b), t = 1 / real_sqrt(a + d + 2 * root_det);
+    const float sa = t * (a + root_det), sb = t * b, sd = t * (d + root_det);
+    const float inverse[3] = {sd / root_det, -sb / root_det, sa / root_det};
+    const tmi_point turn = square_turn(out, m, inverse);
+    finder->centre = (tmi_point){start.x + m->x, start.y + m->y};
+    finder->right = (tmi_point){sa * turn.x + sb * turn.y, sb * turn.x + sd * turn.y};
+    finder->down = (tmi_point){-sa * turn.y + sb * turn.x, -sb * turn.y + sd * turn.x};
+}
+
+/* ---- Fine location ------------------------------------------------------------------------------------ */
+
+/* How far outwards from (u, v) the edge lies that should be there, in modules: where the gray value passes the
+ * middle of what is half a module inside and outside. Blur is symmetric, so that this holds for blurred edges.
+ * Weighted by the edge's contrast; edges of the wrong sign say nothing. */
+static float edge_offset(const tmi_view *view, const tmi_finder *f, float u, float v, tmi_point normal, float span,
+                         float *contrast)
+{
+    const tmi_point at = tmi_at(f, u, v);
+    const float nx = span * (normal.x * f->right.x + normal.y * f->down.x);
+    const float ny = span * (normal.x * f->right.y + normal.y * f->down.y);
+    const float inside = tmi_sample(view, at.x - nx, at.y - ny), outside = tmi_sample(view, at.x + nx, at.y + ny);
+    const float here = tmi_sample(view, at.x, at.y);
+    *contrast = outside - inside;
+    const float half = 0.5f * (outside - inside);
+    const float offset = half != 0 ? span * (0.5f * (inside + outside) - here) / half : 0;
+    return offset > span ? span : offset < -span ? -span : offset;
+}
+
+/* One step of fitting the square to the edges of its three rings. `span` is how far to look, in modules. */
+static bool fit_step(const tmi_view *view, tmi_finder *f, float span, uint32_t *reads)
+{
+    tmi_normal shift_u = {0}, shift_v = {0}; /* each a constant, and how it grows with u and v */
+    const float least = 0.1f * (f->light - f->dark);
+    for (int ring = 0; ring < 3; ring++) {
+        const float r = 1.5f + (float)ring, sign = ring == 1 ? -1.0f : 1.0f;
+        for (int along = -1 - ring; along <= 1 + ring; along++)
+            for (int side = 0; side < 4; side++) {
+                static const tmi_point normal[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+                const tmi_point n = normal[side];
+                const float u = n.x != 0 ? n.x * r : (float)along, v = n.x != 0 ? (float)along : n.y * r;
+                float contrast;
+                const float offset = edge_offset(view, f, u, v, n, span, &contrast);
+                *reads += 3;
+                if (sign * contrast <= least)
+                    continue;
+                if (n.x != 0)
+                    tmi_normal_add(&shift_u, 1, u, v, n.x * offset, sign * contrast);
+                else
+                    tmi_normal_add(&shift_v, 1, u, v, n.y * offset, sign * contrast);
+            }
+    }
+    float du[3], dv[3];
+    if (!tmi_normal_solve(&shift_u, du) || !tmi_normal_solve(&shift_v, dv))
+        return false;
+    const tmi_finder old = *f;
+    f->centre = tmi_at(&old, du[0], dv[0]);
+    f->right = (tmi_point){(1 + du[1]) * old.right.x + dv[1] * old.down.x,
+                           (1 + du[1]) * old.right.y + dv[1] * old.down.y};
+    f->down = (tmi_point){du[2] * old.right.x + (1 + dv[2]) * old.down.x,
+                          du[2] * old.right.y + (1 + dv[2]) * old.down.y};
+    return real_abs(du[0]) < 1 && real_abs(dv[0]) < 1;
+}
+
+/* ---- Score --------------------------------------------------------------------------------------------- */
+
+static int ring_of(int u, int v)
+{
+    const int a = u < 0 ? -u : u, b = v < 0 ? -v : v;
+    return a > b ? a : b;
+}
+
+void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+{
+    float dark = 0, light = 0, squares = 0;
+    int darks = 0, lights = 0;
+    for (int v = -4; v <= 4; v++)
+        for (int u = -4; u <= 4; u++) {
+            const int ring = ring_of(u, v);
+            const tmi_point at = tmi_at(finder, (float)u, (float)v);
+            const float value = tmi_sample(view, at.x, at.y);
+            squares += value * value;
+            if (ring <= 1 || ring == 3) {
+                dark += value;
+                darks++;
+            } else {
+                light += value;
+                lights++;
+            }
+        }
+    *reads += (uint32_t)(darks + lights);
+    const float n = (float)(darks + lights), sum = dark + light;
+    const float variance = squares - sum * sum / n;
+    finder->dark = dark / (float)darks;
+    finder->light = light / (float)lights;
+    const float difference = finder->light - finder->dark;
+    const float explained = difference * real_sqrt((float)darks * (float)lights / n);
+    finder->score = variance > 1 ? explained / real_sqrt(variance) : 0;
+}
+
+/* ---- Entrances ----------------------------------------------------------------------------------------- */
+
+static float module_area(const tmi_finder *f)
+{
+    return f->right.x * f->down.y - f->right.y * f->down.x;
+}
+
+bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+{
+    static const float span[4] = {0.5f, 0.5f, 0.4f, 0.4f};
+    for (int step = 0; step < 4; step++)
+        if (!fit_step(view, finder, span[step], reads) || !(module_area(finder) > 0.3f))
+            return false;
+    tmi_finder_score(view, finder, reads);
+    return true;
+}
+
+bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, float contrast, tmi_finder *finder,
+                       uint32_t *reads)
+{
+    const float step_px = real_max(0.4f, 0.25f * module_px), swing = 0.2f * contrast;
+    if (!centre_in_core(view, &start, step_px, 0.5f * contrast, reads))
+        return false;
+    float reach[RAYS];
+    int missing = 0;
+    for (int i = 0; i < RAYS && missing <= 5; i++) {
+        reach[i] = cast_ray(view, start, ray_direction[i], step_px, swing, reads);
+        missing += reach[i] == 0;
+    }
+    outline out;
+    moments m;
+    if (missing > 5 || !close_gaps(reach, &out) || !outline_moments(&out, &m))
+        return false;
+    square_from_moments(&m, &out, start, finder);
+    finder->dark = 0;
+    finder->light = contrast;
+    return tmi_finder_refine(view, finder, reads);
+}

@@ -1,0 +1,38 @@
+/* Finder patterns: from a hit on a scan line to a located square. */
+#ifndef TAPEMARK_FINDER_H
+#define TAPEMARK_FINDER_H
+
+#include "view.h"
+
+#include <stdbool.h>
+
+/* The 7 x 7 modules of a finder pattern as seen: a parallelogram, for perspective changes little within it.
+ * The pattern looks the same when turned by a quarter, so which of the two axes runs along the tape is not
+ * known from it alone. The axes are right-handed: `down` lies clockwise of `right` in the image. */
+typedef struct tmi_finder {
+    tmi_point centre;
+    tmi_point right;  /* one module, px */
+    tmi_point down;   /* one module, px */
+    float score;      /* normalised correlation with the ideal pattern */
+    float dark, light; /* gray values of its modules */
+} tmi_finder;
+
+/* Starts from a point within the core and a guess of one module's length along a scan line; looks around in 16
+ * directions for the rings, and fits the square. False where there is none. `reads` grows by the pixels read. */
+bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, float contrast, tmi_finder *finder,
+                       uint32_t *reads);
+
+/* Moves a finder that is off by up to about half a module to where its ring edges are, and scores it. */
+bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+
+/* Correlation of the 9 x 9 modules around it (light margin included) with the ideal pattern; sets score, dark
+ * and light. */
+void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+
+static inline tmi_point tmi_at(const tmi_finder *finder, float u, float v)
+{
+    return (tmi_point){finder->centre.x + u * finder->right.x + v * finder->down.x,
+                       finder->centre.y + u * finder->right.y + v * finder->down.y};
+}
+
+#endif

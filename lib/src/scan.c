@@ -1,0 +1,124 @@
+#include "scan.h"
+
+#include "tapemark.h"
+
+enum { TILE = TAPEMARK_TILE_PX, NO_EXTREME = -1, EDGES = 6 };
+
+/* A scan line in the making. It follows the signal from one extreme to the next: a rise or a fall counts once
+ * it exceeds the tile's swing, and its edge lies where the signal passes the middle between the two extremes.
+ * So the threshold follows the light, and rings of a single blurred pixel still give an edge. */
+typedef struct scan_line {
+    const uint8_t *pixels;
+    ptrdiff_t step;
+    uint8_t invert;
+    int rising;             /* the signal's direction since the last extreme */
+    int32_t turn;           /* where that direction was noticed */
+    int previous;           /* gray value of the last extreme, or NO_EXTREME */
+    int edges;              /* found so far; the last EDGES of them follow */
+    float edge[EDGES];  /* px, the newest last */
+    int level[EDGES];   /* the extreme before each edge */
+} scan_line;
+
+static int gray(const scan_line *scan, int32_t i)
+{
+    return scan->pixels[i * scan->step] ^ scan->invert;
+}
+
+/* Where the signal passes `twice_level` / 2, near the place at which its rise or fall was noticed. */
+static float crossing(const scan_line *scan, int32_t from, int rising, int twice_level)
+{
+    int32_t i = from;
+    if (rising) {
+        while (2 * gray(scan, i) < twice_level)
+            i++;
+        while (2 * gray(scan, i - 1) >= twice_level)
+            i--;
+    } else {
+        while (2 * gray(scan, i) > twice_level)
+            i++;
+        while (2 * gray(scan, i - 1) <= twice_level)
+            i--;
+    }
+    const float here = (float)gray(scan, i), before = (float)gray(scan, i - 1);
+    return (float)i - (here - 0.5f * (float)twice_level) / (here - before);
+}
+
+/* Five runs, dark first, in the proportion 1:1:3:1:1. The bounds are wide because a blurred ring of one pixel
+ * looks wider or narrower than it is; what gets through is looked at in both directions later on. */
+static int looks_like_finder(const scan_line *scan, tmi_hit *hit)
+{
+    const float *e = scan->edge;
+    const float chord = e[5] - e[0], module = chord * (1.0f / 7), slack = 0.25f;
+    const float core = e[3] - e[2];
+    if (core < 2.0f * module - slack || core > 4.1f * module + slack)
+        return 0;
+    const float run[4] = {e[1] - e[0], e[2] - e[1], e[4] - e[3], e[5] - e[4]};
+    for (int i = 0; i < 4; i++)
+        if (run[i] < 0.35f * module || run[i] > 1.8f * module + slack)
+            return 0;
+    const float skew = run[0] + run[1] - run[2] - run[3];
+    if (skew > module + slack || -skew > module + slack)
+        return 0;
+    hit->centre = 0.5f * (e[2] + e[3]);
+    hit->chord = chord;
+    const int *level = scan->level;
+    hit->contrast = 0.5f * (float)(level[2] + level[4]) - (float)level[3];
+    return 1;
+}
+
+/* The extreme that was followed is over, since the signal at `here` has turned away from it: the edge between
+ * it and the extreme before it can be placed. */
+static void finish_extreme(scan_line *scan, int extreme, int32_t here)
+{
+    if (scan->previous >= 0) {
+        for (int i = 1; i < EDGES; i++) {
+            scan->edge[i - 1] = scan->edge[i];
+            scan->level[i - 1] = scan->level[i];
+        }
+        scan->edge[EDGES - 1] = crossing(scan, scan->turn, scan->rising, extreme + scan->previous);
+        scan->level[EDGES - 1] = scan->previous;
+        scan->edges++;
+    }
+    scan->previous = extreme;
+    scan->rising = !scan->rising;
+    scan->turn = here;
+}
+
+static void report(const scan_line *scan, int32_t line, tmi_hit_function on_hit, void *context)
+{
+    tmi_hit hit;
+    if (!scan->rising && scan->edges >= EDGES && looks_like_finder(scan, &hit))
+        on_hit(context, line, &hit);
+}
+
+int32_t tmi_scan_line(const uint8_t *pixels, ptrdiff_t step, int32_t length, uint8_t invert, const uint8_t *swing,
+                      ptrdiff_t swing_step, int32_t line, tmi_hit_function on_hit, void *context)
+{
+    scan_line scan = {.pixels = pixels, .step = step, .invert = invert, .previous = NO_EXTREME, .rising = 1};
+    int32_t read = 0;
+    int extreme = -1;
+    for (int32_t start = 0; start < length; start += TILE, swing += swing_step) {
+        const int least = *swing;
+        if (!least)
+            continue;
+        const int32_t end = length - start < TILE ? length : start + TILE;
+        read += end - start;
+        for (int32_t i = start; i < end; i++) {
+            const int value = pixels[i * step] ^ invert;
+            if (scan.rising ? value >= extreme : value <= extreme) {
+                extreme = value;
+                continue;
+            }
+            if (scan.rising ? extreme - value < least : value - extreme < least)
+                continue;
+            finish_extreme(&scan, extreme, i);
+            extreme = value;
+            report(&scan, line, on_hit, context);
+        }
+    }
+    if (scan.rising && scan.previous != NO_EXTREME) { /* the light margin of a pattern at the line's end */
+        finish_extreme(&scan, extreme, length);
+        report(&scan, line, on_hit, context);
+    }
+    return read;
+}

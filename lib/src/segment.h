@@ -1,0 +1,29 @@
+/* A row of finder patterns read as a segment: its CMs, and the TM that it may be. */
+#ifndef TAPEMARK_SEGMENT_H
+#define TAPEMARK_SEGMENT_H
+
+#include "marker.h"
+#include "tape.h"
+
+/* What reading a segment needs and adds to. */
+typedef struct tmi_reader {
+    const tmi_view *view;
+    const tapemark_config *config; /* defaults filled in */
+    tapemark_result *result;
+    tmi_words words;
+    uint32_t work_max;
+} tmi_reader;
+
+/* Memory for one segment at a time; too large for the stack of a microcontroller. */
+typedef struct tmi_segment {
+    int cm_count;
+    tmi_finder finders[TMI_MAX_CHAIN];
+    tmi_homography maps[TAPEMARK_TM_MAX_CMS];
+    tmi_reading readings[2][TAPEMARK_TM_MAX_CMS]; /* as the row runs, and standing on the head */
+} tmi_segment;
+
+/* Reads the segment of `finder_count` finders already copied to segment->finders, and appends what is sure to
+ * the result. */
+void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count);
+
+#endif

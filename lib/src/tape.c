@@ -1,0 +1,245 @@
+#include "tape.h"
+
+#include "real.h"
+
+static const float pitch = TAPEMARK_CM_PITCH_MODULES;
+
+/* A foretold finder needs this part of the score of the one that foretold it. Blur and size change little from
+ * one to the next; what lies in wait there are bars (0.67 of a finder's score), coding regions and clutter. */
+static const float foretold_part = 0.75f;
+
+/* ---- One finder and its directions ---------------------------------------------------------------------- */
+
+static tmi_point axis(const tmi_finder *f, int direction)
+{
+    const tmi_point a = direction & 1 ? f->down : f->right;
+    return direction & 2 ? (tmi_point){-a.x, -a.y} : a;
+}
+
+/* The same square, with `right` now running in that direction. */
+static tmi_finder turned(const tmi_finder *f, int direction)
+{
+    tmi_finder out = *f;
+    out.right = axis(f, direction);
+    out.down = axis(f, (direction + 1) & 3);
+    return out;
+}
+
+/* Image point to modules of the finder. */
+static tmi_point to_modules(const tmi_finder *f, tmi_point at)
+{
+    const float dx = at.x - f->centre.x, dy = at.y - f->centre.y;
+    const float det = f->right.x * f->down.y - f->right.y * f->down.x;
+    return (tmi_point){(dx * f->down.y - dy * f->down.x) / det, (f->right.x * dy - f->right.y * dx) / det};
+}
+
+int tmi_tape_finder_at(const tmi_tape *tape, tmi_point at)
+{
+    for (int i = 0; i < tape->count; i++) {
+        const tmi_finder *f = &tape->nodes[i].finder;
+        const float reach = 4 * (real_abs(f->right.x) + real_abs(f->right.y) + real_abs(f->down.x) + real_abs(f->down.y));
+        if (real_abs(at.x - f->centre.x) > reach || real_abs(at.y - f->centre.y) > reach)
+            continue;
+        const tmi_point m = to_modules(f, at);
+        if (real_abs(m.x) < 4 && real_abs(m.y) < 4)
+            return i;
+    }
+    return TMI_NONE;
+}
+
+int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
+{
+    if (tape->count == TMI_MAX_FINDERS) {
+        tape->stats->limits |= TAPEMARK_LIMIT_CANDIDATES;
+        return TMI_NONE;
+    }
+    tmi_node *node = &tape->nodes[tape->count];
+    node->finder = *finder;
+    for (int d = 0; d < TMI_DIRECTIONS; d++)
+        node->neighbour[d] = TMI_NONE;
+    tape->stats->finders++;
+    return tape->count++;
+}
+
+/* ---- Links between located finders ------------------------------------------------------------------------ */
+
+/* How badly `other` sits for the next finder in that direction; negative where it cannot be that.
+ * Seen in perspective, n modules are n * sqrt(s1 * s2) long when s1 and s2 are the scales at their two ends;
+ * so the product of the distances in modules of both ends is 25 squared. */
+static float misfit(const tmi_finder *f, int direction, const tmi_finder *other, int *direction_back)
+{
+    const tmi_finder from = turned(f, direction);
+    const tmi_point there = to_modules(&from, other->centre);
+    if (there.x < 0.6f * pitch || there.x > 1.7f * pitch || real_abs(there.y) > 0.18f * there.x)
+        return -1;
+    for (int back = 0; back < TMI_DIRECTIONS; back++) {
+        const tmi_finder to = turned(other, back);
+        const tmi_point here = to_modules(&to, f->centre);
+        if (here.x < 0.6f * pitch || here.x > 1.7f * pitch || real_abs(here.y) > 0.18f * here.x)
+            continue;
+        const float ratio = there.x * here.x / (pitch * pitch);
+        if (ratio < 0.77f || ratio > 1.3f)
+            continue;
+        *direction_back = back;
+        return real_abs(ratio - 1) * pitch + real_abs(there.y) + real_abs(here.y);
+    }
+    return -1;
+}
+
+static int best_neighbour(const tmi_tape *tape, int i, int direction, int *direction_back)
+{
+    int best = TMI_NONE;
+    float least = 0;
+    for (int j = 0; j < tape->count; j++) {
+        int back;
+        const float m = j == i ? -1 : misfit(&tape->nodes[i].finder, direction, &tape->nodes[j].finder, &back);
+        if (m < 0 || (best != TMI_NONE && m >= least))
+            continue;
+        best = j;
+        least = m;
+        *direction_back = back;
+    }
+    return best;
+}
+
+static void join(tmi_tape *tape, int i, int direction, int j, int direction_back)
+{
+    tape->nodes[i].neighbour[direction] = (int16_t)j;
+    tape->nodes[j].neighbour[direction_back] = (int16_t)i;
+}
+
+static void link_located(tmi_tape *tape)
+{
+    for (int i = 0; i < tape->count; i++)
+        for (int d = 0; d < TMI_DIRECTIONS; d++) {
+            int back = 0, again = 0;
+            const int j = best_neighbour(tape, i, d, &back);
+            if (j > i && best_neighbour(tape, j, back, &again) == i && again == d)
+                join(tape, i, d, j, back);
+        }
+}
+
+/* ---- Finders that the scan lines missed -------------------------------------------------------------------- */
+
+/* Where the next finder in that direction should be. The change of scale is known once there is a neighbour on
+ * the other side: along a line in perspective, position is s u / (1 + k u). */
+static tmi_finder foretell(const tmi_tape *tape, int i, int direction)
+{
+    const tmi_node *node = &tape->nodes[i];
+    tmi_finder next = turned(&node->finder, direction);
+    float k = 0;
+    const int behind = node->neighbour[(direction + 2) & 3];
+    if (behind != TMI_NONE) {
+        const tmi_point there = to_modules(&next, tape->nodes[behind].finder.centre);
+        const float length = real_sqrt(there.x * there.x + there.y * there.y);
+        next.right = (tmi_point){(next.centre.x - tape->nodes[behind].finder.centre.x) / length,
+                                 (next.centre.y - tape->nodes[behind].finder.centre.y) / length};
+        k = real_max(-0.015f, real_min(0.015f, (1 - pitch / length) / pitch));
+    }
+    const float shrink = 1 / (1 + k * pitch);
+    next.centre = tmi_at(&next, pitch * shrink, 0);
+    next.right = (tmi_point){next.right.x * shrink * shrink, next.right.y * shrink * shrink};
+    next.down = (tmi_point){next.down.x * shrink, next.down.y * shrink};
+    return next;
+}
+
+/* The best place for the foretold finder, within a few modules. */
+static bool search(tmi_tape *tape, tmi_finder *finder)
+{
+    const tmi_finder guess = *finder;
+    const float score_min = foretold_part * guess.score;
+    finder->score = -1;
+    for (int v = -1; v <= 1; v++)
+        for (int u = -4; u <= 4; u++) {
+            tmi_finder tried = guess;
+            tried.centre = tmi_at(&guess, (float)u, (float)v);
+            tmi_finder_score(tape->view, &tried, &tape->stats->work);
+            if (tried.score > finder->score && tried.light > tried.dark)
+                *finder = tried;
+        }
+    return finder->score > 0.5f * score_min && tmi_finder_refine(tape->view, finder, &tape->stats->work) &&
+           finder->score >= score_min;
+}
+
+static bool inside(const tmi_view *view, tmi_point at)
+{
+    return at.x >= 0 && at.y >= 0 && at.x <= (float)(view->width - 1) && at.y <= (float)(view->height - 1);
+}
+
+static void grow(tmi_tape *tape, int i, int direction)
+{
+    tmi_finder next = foretell(tape, i, direction);
+    if (!inside(tape->view, next.centre))
+        return;
+    if (tape->stats->work >= tape->work_max) {
+        tape->stats->limits |= TAPEMARK_LIMIT_WORK;
+        return;
+    }
+    int back;
+    if (!search(tape, &next) || misfit(&tape->nodes[i].finder, direction, &next, &back) < 0)
+        return;
+    int j = tmi_tape_finder_at(tape, next.centre);
+    if (j == TMI_NONE)
+        j = tmi_tape_add(tape, &next);
+    if (j == TMI_NONE || j == i || misfit(&tape->nodes[i].finder, direction, &tape->nodes[j].finder, &back) < 0 ||
+        tape->nodes[j].neighbour[back] != TMI_NONE)
+        return;
+    join(tape, i, direction, j, back);
+}
+
+static bool is_single(const tmi_node *node)
+{
+    for (int d = 0; d < TMI_DIRECTIONS; d++)
+        if (node->neighbour[d] != TMI_NONE)
+            return false;
+    return true;
+}
+
+void tmi_tape_link(tmi_tape *tape)
+{
+    link_located(tape);
+    for (int i = 0; i < tape->count; i++) /* the count grows on the way */
+        for (int d = 0; d < TMI_DIRECTIONS; d++) {
+            const tmi_node *node = &tape->nodes[i];
+            const bool tape_behind = node->neighbour[(d + 2) & 3] != TMI_NONE;
+            if (node->neighbour[d] == TMI_NONE && (tape_behind || is_single(node)))
+                grow(tape, i, d);
+        }
+    for (int i = 0; i < tape->count; i++)
+        tape->stats->rejects[TAPEMARK_REJECT_LONE] += is_single(&tape->nodes[i]);
+}
+
+/* ---- Rows -------------------------------------------------------------------------------------------------- */
+
+/* Follows the links from a row's end. A link is taken off when it is followed, so that each is followed once and
+ * a circle cannot trap. */
+static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX_CHAIN])
+{
+    int count = 0;
+    chain[count++] = turned(&tape->nodes[i].finder, direction);
+    for (int j = tape->nodes[i].neighbour[direction]; j != TMI_NONE && count < TMI_MAX_CHAIN;) {
+        int back = 0;
+        while (back < TMI_DIRECTIONS - 1 && tape->nodes[j].neighbour[back] != i)
+            back++;
+        tape->nodes[i].neighbour[direction] = TMI_NONE;
+        tape->nodes[j].neighbour[back] = TMI_NONE;
+        direction = (back + 2) & 3;
+        chain[count++] = turned(&tape->nodes[j].finder, direction);
+        i = j;
+        j = tape->nodes[i].neighbour[direction];
+    }
+    if (count == TMI_MAX_CHAIN && tape->nodes[i].neighbour[direction] != TMI_NONE)
+        tape->stats->limits |= TAPEMARK_LIMIT_LENGTH;
+    return count;
+}
+
+int tmi_tape_next_chain(tmi_tape *tape, int *next, tmi_finder chain[TMI_MAX_CHAIN])
+{
+    for (; *next < tape->count; ++*next)
+        for (int d = 0; d < TMI_DIRECTIONS; d++) {
+            const int16_t *neighbour = tape->nodes[*next].neighbour;
+            if (neighbour[d] != TMI_NONE && neighbour[(d + 2) & 3] == TMI_NONE)
+                return follow(tape, *next, d, chain);
+        }
+    return 0;
+}

@@ -1,0 +1,45 @@
+/* Tapes: which finder patterns follow each other at the distance of a CM, and where the ones are that the scan
+ * lines missed. */
+#ifndef TAPEMARK_TAPE_H
+#define TAPEMARK_TAPE_H
+
+#include "finder.h"
+
+#include "tapemark.h"
+
+enum {
+    TMI_MAX_FINDERS = 160,
+    TMI_MAX_CHAIN = TAPEMARK_TM_MAX_CMS + 1,
+    TMI_NONE = -1
+};
+
+/* Directions of a finder: its right, down, left and up side. */
+enum { TMI_DIRECTIONS = 4 };
+
+typedef struct tmi_node {
+    tmi_finder finder;
+    int16_t neighbour[TMI_DIRECTIONS]; /* index of the next finder of the tape on that side, or TMI_NONE */
+} tmi_node;
+
+typedef struct tmi_tape {
+    const tmi_view *view;
+    tapemark_stats *stats;
+    uint32_t work_max; /* stats->work must not grow beyond this */
+    int count;
+    tmi_node nodes[TMI_MAX_FINDERS];
+} tmi_tape;
+
+/* The finder pattern whose 7 x 7 modules (and half a module around) hold this point, or TMI_NONE. */
+int tmi_tape_finder_at(const tmi_tape *tape, tmi_point at);
+
+/* Adds a finder pattern; TMI_NONE, and a limit noted, when there is no room. */
+int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder);
+
+/* Links neighbours, then looks for missing ones beyond the ends of what is linked, and around single ones. */
+void tmi_tape_link(tmi_tape *tape);
+
+/* The rows of two or more linked finders, one a call: starts at *next (0 at first) and moves it on. Copies at
+ * most TMI_MAX_CHAIN finders, turned so that `right` runs along the row. Returns how many; 0 at the end. */
+int tmi_tape_next_chain(tmi_tape *tape, int *next, tmi_finder chain[TMI_MAX_CHAIN]);
+
+#endif

@@ -1,0 +1,27 @@
+/* The first pass: which parts of the image have enough contrast to be worth a closer look. */
+#ifndef TAPEMARK_TILES_H
+#define TAPEMARK_TILES_H
+
+#include "view.h"
+
+#include "tapemark.h"
+
+/* One byte a tile in each plane, with a border of one tile all round so that neighbours always exist. */
+typedef struct tmi_tiles {
+    uint8_t *low;   /* darkest pixel */
+    uint8_t *high;  /* lightest pixel */
+    uint8_t *swing; /* least change that counts as an edge in this tile; 0: too flat to be scanned */
+    int32_t columns, rows;
+    ptrdiff_t pitch;     /* from one row of tiles to the next */
+    uint32_t active;     /* tiles with a swing */
+} tmi_tiles;
+
+/* The planes' bytes for an image of this size, three a tile. */
+size_t tmi_tiles_bytes(int32_t width, int32_t height);
+
+/* Lays the planes out in `memory` and fills them. At most `active_max` tiles stay active: where more have
+ * contrast_min, the bar is raised to what leaves few enough. Returns whether that was needed. */
+bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
+                     uint8_t *memory);
+
+#endif

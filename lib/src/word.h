@@ -1,0 +1,36 @@
+/* Which code word do 112 cells of gray show? Whole words are matched; no cell is decided by itself. */
+#ifndef TAPEMARK_WORD_H
+#define TAPEMARK_WORD_H
+
+#include "tapemark.h"
+
+/* The coding region as sampled: 0 is light, 1 is dark, and anything near that may occur. */
+typedef struct tmi_cells {
+    float value[TAPEMARK_CELLS];
+    /* What each module gives to its next one along the tape and across it: the blur, in modules. */
+    float leak_along, leak_across;
+} tmi_cells;
+
+typedef struct tmi_reading {
+    int32_t id;          /* TMI_NO_ID: nothing fits */
+    float score;         /* correlation of the cells with the best word's, -1 to 1 */
+    float margin;        /* what the second best word's correlation is below that */
+    uint8_t doubtful, corrected;  /* cells; see tapemark_cm */
+    bool unknown;        /* a list of known ids was given, and this is none of them */
+} tmi_reading;
+
+/* Restrictions on the words that may be read; ids as in tapemark_config. */
+typedef struct tmi_words {
+    int32_t id_max;
+    const int32_t *known_ids;
+    size_t known_id_count;
+} tmi_words;
+
+/* Turns the cells by half a turn: as seen by a reader who stands on the head. */
+void tmi_cells_turn(tmi_cells *cells);
+
+/* The word of at most four ones (or zeros, where most cells are dark) that fits best. Adjusts the scale of the
+ * cells to the cells that all words share. */
+void tmi_word_match(tmi_cells *cells, const tmi_words *words, tmi_reading *reading);
+
+#endif
