@@ -1,12 +1,13 @@
 #!/bin/sh
-# Usage: install.sh CMAKE CC BUILD_DIR CONSUMER_DIR
+# Usage: install.sh CMAKE GENERATOR CC BUILD_DIR CONSUMER_DIR
 # Installs the library into an empty place, moves it, and builds the same small program against it in each way
 # that a user may choose.
 set -eu
 cmake=$1
-cc=$2
-build=$3
-consumer=$4
+generator=$2
+cc=$3
+build=$4
+consumer=$5
 
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
@@ -27,8 +28,11 @@ version=$(pkg-config --modversion tapemark)
 LD_LIBRARY_PATH=$libdir "$place/by-pkg-config" "$version"
 readelf -d "$place/by-pkg-config" | grep -q 'NEEDED.*\[libtapemark\.so\.[0-9]*\]'
 
-"$cmake" -S "$consumer" -B "$place/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$prefix" \
-    -DEXPECTED_VERSION="$version" >"$place/configure.log" || { cat "$place/configure.log"; exit 1; }
-"$cmake" --build "$place/build" >"$place/build.log" || { cat "$place/build.log"; exit 1; }
+"$cmake" -G "$generator" -S "$consumer" -B "$place/build" -DCMAKE_C_COMPILER="$cc" -DCMAKE_PREFIX_PATH="$prefix" \
+    -DEXPECTED_VERSION="$version" >"$place/configure.log"
+"$cmake" --build "$place/build" >"$place/build.log" || {
+    cat "$place/build.log"
+    exit 1
+}
 "$place/build/with_static" "$version"
 "$place/build/with_shared" "$version"
