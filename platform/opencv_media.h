@@ -1,0 +1,31 @@
+/*
+ * What OpenCV does for us, behind a C interface: still pictures and videos to gray, gray or colour to PNG.
+ * OpenCV and the libraries below it print their complaints themselves; while they work, standard error is
+ * pointed at /dev/null, so that users get one line, ours.
+ */
+#ifndef PLATFORM_OPENCV_MEDIA_H
+#define PLATFORM_OPENCV_MEDIA_H
+
+#include "frame_source.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct gray_picture {
+    uint8_t *pixels;  /* rows without gaps; malloc'ed, the caller frees it */
+    int32_t width_px;
+    int32_t height_px;
+} gray_picture;
+
+/* A whole still picture in memory. Transparent parts show white, orientation tags are followed. */
+bool opencv_decode_still(const uint8_t *bytes, size_t size, gray_picture *picture, error_text *error);
+
+/* A video file, read through FFmpeg. Rotation tags are followed. NULL on failure. */
+frame_source *opencv_video_open(const char *path, error_text *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
