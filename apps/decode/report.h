@@ -1,0 +1,40 @@
+/* What was read in a frame, as a line of JSON, rows of CSV or lines for people, on standard output. */
+#ifndef DECODE_REPORT_H
+#define DECODE_REPORT_H
+
+#include "places.h"
+#include "tapemark.h"
+#include "text_buffer.h"
+
+typedef enum report_format { REPORT_JSONL, REPORT_CSV, REPORT_TEXT } report_format;
+
+typedef struct frame_report {
+    const char *source;
+    uint64_t frame;
+    int32_t width_px;
+    int32_t height_px;
+    int64_t time_ns;  /* FRAME_TIME_UNKNOWN: the source does not tell */
+    uint32_t decode_us;
+    const tapemark_result *result;
+    const places *known;  /* NULL without a map */
+} frame_report;
+
+/* One line, however many markers. */
+void report_add_json(text_buffer *buffer, const frame_report *report);
+
+/* One row a marker; none for a frame without. */
+void report_add_csv_header(text_buffer *buffer);
+void report_add_csv(text_buffer *buffer, const frame_report *report);
+
+/* One line a marker; none for a frame without. */
+void report_add_text(text_buffer *buffer, const frame_report *report);
+
+/* ---- Shared by the formats ----------------------------------------------------------------------------- */
+
+/* Indices of the CMs that were read in a TM, in the order of their slots; returns how many. */
+size_t report_list_cms(const tapemark_result *result, size_t tm_index, size_t indices[TAPEMARK_TM_MAX_CMS]);
+
+/* The names of the bits of tapemark_stats.limits, in order; NULL beyond the last. */
+const char *report_limit_name(unsigned bit);
+
+#endif
