@@ -5,8 +5,9 @@
 
 #include <string.h>
 
-/* Scan lines are this far apart: a finder pattern of one pixel a module has a core of three. */
-enum { LINE_SPACING = 3 };
+/* Scan lines, across and down, are this far apart. A finder pattern of one pixel a module has a core of three, so
+ * that a few are missed at that size; their neighbours on the tape foretell them. */
+enum { LINE_SPACING = 4 };
 
 /* A finder pattern found by itself has to correlate this well with the ideal one. */
 static const float lone_score = 0.6f;
@@ -106,8 +107,9 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     if (workspace_size < tapemark_workspace_bytes(image->width_px, image->height_px))
         return TAPEMARK_BAD_WORKSPACE;
 
+    const bool inverted = settings.polarity == TAPEMARK_LIGHT_ON_DARK;
     const tmi_view view = {image->pixels, image->width_px, image->height_px, image->stride_bytes,
-                           settings.polarity == TAPEMARK_LIGHT_ON_DARK ? 255 : 0};
+                           inverted ? 255 : 0, inverted ? -1.0f : 1.0f, inverted ? 255.0f : 0.0f};
     const uintptr_t misaligned = (uintptr_t)memory % _Alignof(workspace);
     workspace *w = (workspace *)((uint8_t *)memory + (misaligned ? _Alignof(workspace) - misaligned : 0));
     tmi_tiles tiles;

@@ -91,28 +91,41 @@ static void report(const scan_line *scan, int32_t line, tmi_hit_function on_hit,
         on_hit(context, line, &hit);
 }
 
+/* Goes on to the next extreme within the tile: the first pixel from `from` on that lies `least` below (while
+ * rising) or above the extreme so far. Returns `end` where there is none. */
+static int32_t next_turn(const scan_line *scan, int32_t from, int32_t end, int least, int *extreme)
+{
+    const uint8_t *p = scan->pixels + from * scan->step;
+    const ptrdiff_t step = scan->step;
+    int most = *extreme;
+    int32_t i = from;
+    /* Falling is rising with all values inverted. */
+    const int flip = scan->rising ? scan->invert : scan->invert ^ 255;
+    most = scan->rising ? most : 255 - most;
+    for (; i < end; i++, p += step) {
+        const int value = *p ^ flip;
+        if (most - value >= least)
+            break;
+        most = value > most ? value : most;
+    }
+    *extreme = scan->rising ? most : 255 - most;
+    return i;
+}
+
 int32_t tmi_scan_line(const uint8_t *pixels, ptrdiff_t step, int32_t length, uint8_t invert, const uint8_t *swing,
                       ptrdiff_t swing_step, int32_t line, tmi_hit_function on_hit, void *context)
 {
     scan_line scan = {.pixels = pixels, .step = step, .invert = invert, .previous = NO_EXTREME, .rising = 1};
     int32_t read = 0;
-    int extreme = -1;
+    int extreme = 0;
     for (int32_t start = 0; start < length; start += TILE, swing += swing_step) {
-        const int least = *swing;
-        if (!least)
+        if (!*swing)
             continue;
         const int32_t end = length - start < TILE ? length : start + TILE;
         read += end - start;
-        for (int32_t i = start; i < end; i++) {
-            const int value = pixels[i * step] ^ invert;
-            if (scan.rising ? value >= extreme : value <= extreme) {
-                extreme = value;
-                continue;
-            }
-            if (scan.rising ? extreme - value < least : value - extreme < least)
-                continue;
+        for (int32_t i = start; (i = next_turn(&scan, i, end, *swing, &extreme)) < end; i++) {
             finish_extreme(&scan, extreme, i);
-            extreme = value;
+            extreme = gray(&scan, i);
             report(&scan, line, on_hit, context);
         }
     }

@@ -14,41 +14,76 @@ size_t tmi_tiles_bytes(int32_t width, int32_t height)
     return 3 * ((size_t)tiles_across(width) + 2) * ((size_t)tiles_across(height) + 2);
 }
 
-/* Darkest and lightest pixel of each column over one row of tiles. Kept free of branches and of calls: the
- * compiler turns it into a few vector instructions, and it runs over every pixel of the frame. */
-static void column_extremes(const uint8_t *restrict pixels, ptrdiff_t stride, int32_t rows, int32_t width,
-                            uint8_t *restrict low, uint8_t *restrict high)
+/* Every other row is read: the first pass runs over the whole frame, and what it must not miss, a finder pattern,
+ * is seven rows high at least. */
+enum { ROW_STEP = 2, ROWS_READ = TILE / ROW_STEP, STRIP = 32 * TILE };
+
+static inline uint8_t lesser(uint8_t a, uint8_t b)
 {
-    memcpy(low, pixels, (size_t)width);
-    memcpy(high, pixels, (size_t)width);
-    for (int32_t y = 1; y < rows; y++) {
-        const uint8_t *restrict line = pixels + y * stride;
-        for (int32_t x = 0; x < width; x++) {
-            low[x] = line[x] < low[x] ? line[x] : low[x];
-            high[x] = line[x] > high[x] ? line[x] : high[x];
-        }
+    return a < b ? a : b;
+}
+
+static inline uint8_t greater(uint8_t a, uint8_t b)
+{
+    return a > b ? a : b;
+}
+
+/* Darkest and lightest pixel of each column over one row of tiles. The eight rows are spelled out so that each
+ * vector of columns is loaded once and stored once. */
+static void column_extremes(const uint8_t *restrict p, ptrdiff_t stride, int32_t width, uint8_t *restrict low,
+                            uint8_t *restrict high)
+{
+    _Static_assert(ROWS_READ == 8, "eight rows are spelled out below");
+    const ptrdiff_t s = ROW_STEP * stride;
+    for (int32_t x = 0; x < width; x++) {
+        const uint8_t a = p[x], b = p[x + s], c = p[x + 2 * s], d = p[x + 3 * s];
+        const uint8_t e = p[x + 4 * s], f = p[x + 5 * s], g = p[x + 6 * s], h = p[x + 7 * s];
+        low[x] = lesser(lesser(lesser(a, b), lesser(c, d)), lesser(lesser(e, f), lesser(g, h)));
+        high[x] = greater(greater(greater(a, b), greater(c, d)), greater(greater(e, f), greater(g, h)));
     }
 }
 
-enum { STRIP = 32 * TILE };
+/* The same for a last row of tiles that the image cuts off. */
+static void column_extremes_cut(const uint8_t *restrict p, ptrdiff_t stride, int32_t rows, int32_t width,
+                                uint8_t *restrict low, uint8_t *restrict high)
+{
+    memcpy(low, p, (size_t)width);
+    memcpy(high, p, (size_t)width);
+    for (int32_t y = ROW_STEP; y < rows; y += ROW_STEP)
+        for (int32_t x = 0; x < width; x++) {
+            low[x] = lesser(low[x], p[y * stride + x]);
+            high[x] = greater(high[x], p[y * stride + x]);
+        }
+}
+
+/* Folds the columns of each tile onto its first one. What the folding of a tile's last columns reads of the next
+ * tile ends up beside the first column, and counts for nothing. */
+static void fold_tiles(uint8_t *restrict low, uint8_t *restrict high, int32_t width)
+{
+    for (int32_t half = TILE / 2; half > 0; half /= 2)
+        for (int32_t x = 0; x < width; x++) {
+            low[x] = lesser(low[x], low[x + half]);
+            high[x] = greater(high[x], high[x + half]);
+        }
+}
 
 static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low, uint8_t *high)
 {
     const uint8_t *pixels = view->pixels + (ptrdiff_t)tile_y * TILE * view->stride;
-    const int32_t rows = view->height - tile_y * TILE < TILE ? view->height - tile_y * TILE : TILE;
+    const int32_t rows = view->height - tile_y * TILE;
     for (int32_t x0 = 0; x0 < view->width; x0 += STRIP) {
-        uint8_t strip_low[STRIP], strip_high[STRIP];
+        uint8_t strip_low[STRIP + TILE], strip_high[STRIP + TILE];
         const int32_t width = view->width - x0 < STRIP ? view->width - x0 : STRIP;
-        column_extremes(pixels + x0, view->stride, rows, width, strip_low, strip_high);
+        if (rows >= TILE)
+            column_extremes(pixels + x0, view->stride, width, strip_low, strip_high);
+        else
+            column_extremes_cut(pixels + x0, view->stride, rows, width, strip_low, strip_high);
+        memset(strip_low + width, 255, TILE);
+        memset(strip_high + width, 0, TILE);
+        fold_tiles(strip_low, strip_high, width);
         for (int32_t x = 0; x < width; x += TILE) {
-            const int32_t end = width - x < TILE ? width : x + TILE;
-            uint8_t darkest = 255, lightest = 0;
-            for (int32_t i = x; i < end; i++) {
-                darkest = strip_low[i] < darkest ? strip_low[i] : darkest;
-                lightest = strip_high[i] > lightest ? strip_high[i] : lightest;
-            }
-            low[(x0 + x) / TILE] = darkest;
-            high[(x0 + x) / TILE] = lightest;
+            low[(x0 + x) / TILE] = strip_low[x];
+            high[(x0 + x) / TILE] = strip_high[x];
         }
     }
 }

@@ -13,23 +13,29 @@ typedef struct tmi_view {
     const uint8_t *pixels;
     int32_t width, height;
     ptrdiff_t stride;
-    uint8_t invert; /* 255 when light and dark are exchanged, else 0; XORed to every pixel read */
+    /* Where light and dark are exchanged: 255, -1 and 255; else 0, 1 and 0. Whole pixels are XORed with the
+     * first; interpolated values are sign * value + offset. */
+    uint8_t invert;
+    float sign, offset;
 } tmi_view;
+
+/* Images below this size, either way, hold no marker; the decoder returns before it samples any. */
+enum { TMI_SMALLEST_SIDE = 8 };
 
 /* Bilinear interpolation; outside of the image the border pixels go on. */
 static inline float tmi_sample(const tmi_view *view, float x, float y)
 {
-    const float right = (float)(view->width - 1), bottom = (float)(view->height - 1);
-    x = x > 0 ? (x < right ? x : right) : 0; /* a NaN ends up as 0 */
-    y = y > 0 ? (y < bottom ? y : bottom) : 0;
+    const float right = (float)view->width - 1.001f, bottom = (float)view->height - 1.001f;
+    x = x > 0 ? x : 0; /* a NaN ends up as 0 */
+    y = y > 0 ? y : 0;
+    x = x < right ? x : right;
+    y = y < bottom ? y : bottom;
     const int32_t column = (int32_t)x, row = (int32_t)y;
     const float fx = x - (float)column, fy = y - (float)row;
-    const ptrdiff_t next_column = column + 1 < view->width, next_row = row + 1 < view->height ? view->stride : 0;
-    const uint8_t *p = view->pixels + row * view->stride + column;
-    const float top = (float)p[0] + fx * (float)(p[next_column] - p[0]);
-    const float low = (float)p[next_row] + fx * (float)(p[next_row + next_column] - p[next_row]);
-    const float value = top + fy * (low - top);
-    return view->invert ? 255.0f - value : value;
+    const uint8_t *p = view->pixels + row * view->stride + column, *q = p + view->stride;
+    const float top = (float)p[0] + fx * (float)(p[1] - p[0]);
+    const float low = (float)q[0] + fx * (float)(q[1] - q[0]);
+    return view->sign * (top + fy * (low - top)) + view->offset;
 }
 
 #endif

@@ -27,6 +27,10 @@ static int cell_of(int bit)
     return bit < TAPEMARK_DATA_BITS ? tmi_data_cell[bit] : tmi_checksum_cell[bit - TAPEMARK_DATA_BITS];
 }
 
+/* Data cells at which less than about a fifth of a one is to be seen are no candidates: those whose change, cost
+ * included, would gain less than this part of a one's energy. */
+static const float hopeless_gain = -0.9f;
+
 /* A one has to explain this part of its own energy to be taken for likely, when words are shortlisted. Without
  * it, words that add doubtful ones to the right word would crowd that off the list. */
 static const float one_cost = 0.35f;
@@ -162,31 +166,63 @@ static void fit_line(const float *seen, const float *blank, float reach, float *
     *offset = (y - *gain * x) / n;
 }
 
-/* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
- * differ by what blur does beyond the nearest module. The cells that all words share set it right: twice, so that
- * the second time those that belong to the word are out of the way. */
-static void level_cells(const float *blank, float seen[CELLS])
+/* What most data cells are: their mean, then again without those far from it, which are ones or zeros. */
+static float usual_data(const float *cells)
 {
-    float gain = 1, offset = 0;
-    fit_line(seen, blank, 10, &gain, &offset);
-    fit_line(seen, blank, 0.2f, &gain, &offset);
+    float usual = 0.5f, reach = 10;
+    for (int pass = 0; pass < 3; pass++, reach = 0.25f) {
+        float sum = 0, count = 0;
+        for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
+            const float value = cells[tmi_data_cell[i]];
+            if (real_abs(value - usual) > reach)
+                continue;
+            sum += value;
+            count++;
+        }
+        if (count > 0)
+            usual = sum / count;
+    }
+    return usual;
+}
+
+/* Mean of the alignment cells that differ from most data cells: dark ones in light words, else light ones. */
+static float mean_alignment(const float *cells, const uint16_t rows[ROWS])
+{
+    float sum = 0, count = 0;
+    for (int i = 0; i < CELLS; i++)
+        if (rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1) {
+            sum += cells[i];
+            count++;
+        }
+    return sum / count;
+}
+
+/* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
+ * differ by what blur does beyond the nearest module. The cells that all words share set it right: first by what
+ * most data cells and the alignment cells are, then by all cells that are then as the blank word has them. */
+static void level_cells(const float *blank, bool dark, float seen[CELLS])
+{
+    const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
+    const float seen_data = usual_data(seen), blank_data = usual_data(blank);
+    const float seen_step = mean_alignment(seen, rows) - seen_data;
+    const float blank_step = mean_alignment(blank, rows) - blank_data;
+    float gain = seen_step * blank_step > 0 ? real_max(0.7f, real_min(2, blank_step / seen_step)) : 1;
+    float offset = blank_data - gain * seen_data;
+    fit_line(seen, blank, 0.25f, &gain, &offset);
     for (int i = 0; i < CELLS; i++)
         seen[i] = gain * seen[i] + offset;
 }
 
-static void prepare(matcher *m, tmi_cells *cells)
+static bool mostly_dark(const tmi_cells *cells)
 {
-    float data = 0, blank[CELLS];
+    float data = 0;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++)
         data += cells->value[tmi_data_cell[i]];
-    const bool dark = data > 0.5f * TAPEMARK_DATA_BITS;
-    *m = (matcher){.sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
-    overlaps(cells->leak_along, m->along);
-    overlaps(cells->leak_across, m->across);
-    m->last_along = m->along[0] - m->leak_along * m->leak_along;
-    m->first_across = m->across[0] - m->leak_across * m->leak_across;
-    draw_blank(cells, dark, blank);
-    level_cells(blank, cells->value);
+    return data > 0.5f * TAPEMARK_DATA_BITS;
+}
+
+static void sum_up(matcher *m, const tmi_cells *cells, const float *blank)
+{
     for (int i = 0; i < CELLS; i++) {
         const float seen = cells->value[i];
         m->seen_sum += seen;
@@ -195,6 +231,19 @@ static void prepare(matcher *m, tmi_cells *cells)
         m->blank_energy += blank[i] * blank[i];
         m->seen_blank += seen * blank[i];
     }
+}
+
+static void prepare(matcher *m, const tmi_cells *cells)
+{
+    float blank[CELLS];
+    const bool dark = mostly_dark(cells);
+    *m = (matcher){.sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
+    overlaps(cells->leak_along, m->along);
+    overlaps(cells->leak_across, m->across);
+    m->last_along = m->along[0] - m->leak_along * m->leak_along;
+    m->first_across = m->across[0] - m->leak_across * m->leak_across;
+    draw_blank(cells, dark, blank);
+    sum_up(m, cells, blank);
     for (int bit = 0; bit < BITS; bit++)
         m->bumps[bit] = measure_bump(cells, blank, cell_of(bit));
 }
@@ -219,6 +268,17 @@ static float correlate(const matcher *m, const uint8_t *changed, unsigned count)
     return variance > 1e-6f ? covariance / real_sqrt(variance) : 0;
 }
 
+float tmi_blank_score(tmi_cells *cells)
+{
+    float blank[CELLS];
+    const bool dark = mostly_dark(cells);
+    draw_blank(cells, dark, blank);
+    level_cells(blank, dark, cells->value);
+    matcher sums = {0};
+    sum_up(&sums, cells, blank);
+    return correlate(&sums, NULL, 0);
+}
+
 /* A whole word: its data cells and the checksum that belongs to them. */
 static float score_word(const matcher *m, const candidate *word)
 {
@@ -239,16 +299,16 @@ static float score_word(const matcher *m, const candidate *word)
 static float change_gain(const matcher *m, int bit)
 {
     const bump *b = &m->bumps[bit];
-    return 2 * m->sign * (b->on_seen - b->on_blank) - (1 + one_cost) * bump_energy(m, bit);
+    return 2 * m->sign * (b->on_seen - b->on_blank) - bump_energy(m, bit);
 }
 
-/* The data bits whose change explains most, best first. */
-static void pick_positions(const matcher *m, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
+/* The data bits whose change explains most, best first. Returns how many there are. */
+static int pick_positions(const matcher *m, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
-        const float gain = change_gain(m, i);
-        if (count == CANDIDATE_CELLS && gain <= gains[count - 1])
+        const float energy = bump_energy(m, i), gain = change_gain(m, i) - one_cost * energy;
+        if (gain < hopeless_gain * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
             continue;
         int at = count < CANDIDATE_CELLS ? count++ : count - 1;
         for (; at > 0 && gains[at - 1] < gain; at--) {
@@ -258,6 +318,7 @@ static void pick_positions(const matcher *m, uint8_t picked[CANDIDATE_CELLS], fl
         gains[at] = gain;
         picked[at] = (uint8_t)i;
     }
+    return count;
 }
 
 typedef struct shortlist {
@@ -275,13 +336,13 @@ static void offer(shortlist *list, const candidate *word)
     list->words[at] = *word;
 }
 
-/* All words made of the picked positions, from none to four of them: a walk over the subsets in which each
+/* All words made of the picked positions, of none to four of them: a walk over the subsets in which each
  * step adds the next position or takes the last one back. */
 static void list_words(const matcher *m, shortlist *list)
 {
     uint8_t picked[CANDIDATE_CELLS];
     float gains[CANDIDATE_CELLS];
-    pick_positions(m, picked, gains);
+    const int count = pick_positions(m, picked, gains);
     candidate word = {0};
     int chosen[TAPEMARK_MAX_ONES];
     float before[TAPEMARK_MAX_ONES];
@@ -289,7 +350,7 @@ static void list_words(const matcher *m, shortlist *list)
     list->count = 0;
     offer(list, &word);
     for (;;) {
-        if (word.count < TAPEMARK_MAX_ONES && next < CANDIDATE_CELLS) {
+        if (word.count < TAPEMARK_MAX_ONES && next < count) {
             float gain = gains[next];
             for (int i = 0; i < word.count; i++)
                 gain -= 2 * overlap(m, picked[next], word.positions[i]);
@@ -325,11 +386,47 @@ static bool is_known(const tmi_words *words, int32_t id)
     return low < words->known_id_count && words->known_ids[low] == id;
 }
 
-static void count_cells(const tmi_cells *cells, int32_t id, tmi_reading *reading)
+/* A word that leaves this many times the squared error of the best one is out of the question. */
+static const float odds_max = 4;
+
+typedef struct contest {
+    const matcher *m;
+    float variance;     /* of the cells seen, times their number */
+    float blank_error;  /* squared error of the blank word */
+    float checksum_max; /* the most that any checksum can take off it */
+    float best;         /* score of the best word so far */
+} contest;
+
+static void begin_contest(contest *c, const matcher *m)
+{
+    *c = (contest){.m = m, .variance = m->seen_energy - m->seen_sum * m->seen_sum / CELLS,
+                   .blank_error = m->seen_energy - 2 * m->seen_blank + m->blank_energy, .best = -1};
+    for (int bit = TAPEMARK_DATA_BITS; bit < BITS; bit++)
+        c->checksum_max += real_max(0, change_gain(m, bit));
+}
+
+static float unexplained(float score)
+{
+    return real_max(1e-4f, 1 - score * real_max(0, score));
+}
+
+/* Whether the word could still come near the best one if all its checksum were right; else its checksum, which
+ * costs more than all the rest, need not be computed. */
+static bool in_reach(const contest *c, const candidate *word)
+{
+    float least_error = c->blank_error - word->gain - c->checksum_max;
+    for (int i = 0; i < word->count; i++)
+        least_error -= one_cost * bump_energy(c->m, word->positions[i]);
+    return least_error < (odds_max * unexplained(c->best) + 0.02f) * c->variance;
+}
+
+/* The cells of the word, without blur. */
+static void count_cells(const tmi_cells *cells, tmi_reading *reading)
 {
     uint16_t rows[ROWS];
-    tapemark_cm_grid(id, rows);
-    reading->doubtful = reading->corrected = 0;
+    tapemark_cm_grid(reading->id, rows);
+    const float peak = (1 - 2 * cells->leak_along) * (1 - 2 * cells->leak_across);
+    reading->doubtful = reading->corrected = reading->contrary = 0;
     for (int i = 0; i < CELLS; i++) {
         const float value = cells->value[i];
         const bool dark = rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1;
@@ -337,6 +434,9 @@ static void count_cells(const tmi_cells *cells, int32_t id, tmi_reading *reading
             reading->doubtful++;
         if (dark != (value > 0.5f))
             reading->corrected++;
+        /* A lone cell is seen at least at `peak`: one with less than a quarter of that is something else. */
+        if (dark ? value < 0.25f * peak : value > 1 - 0.25f * peak)
+            reading->contrary++;
     }
 }
 
@@ -357,24 +457,27 @@ static void best_two(const float *scores, const int32_t *ids, int count, const t
             second = scores[i];
         }
     }
-    out->margin = out->score - second;
+    out->odds = real_min(odds_max, unexplained(second) / unexplained(out->score));
 }
 
-void tmi_word_match(tmi_cells *cells, const tmi_words *words, tmi_reading *reading)
+void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading)
 {
     matcher m;
     shortlist list;
     prepare(&m, cells);
     list_words(&m, &list);
+    contest c;
+    begin_contest(&c, &m);
     float scores[CANDIDATE_WORDS];
     int32_t ids[CANDIDATE_WORDS];
     int count = 0;
     for (int i = 0; i < list.count; i++) {
         const candidate *word = &list.words[i];
         const int32_t id = tmi_id_of_positions(word->positions, word->count, m.sign < 0);
-        if (id == TMI_NO_ID || id > words->id_max || id < -words->id_max)
+        if (id == TMI_NO_ID || id > words->id_max || id < -words->id_max || !in_reach(&c, word))
             continue;
         scores[count] = score_word(&m, word);
+        c.best = real_max(c.best, scores[count]);
         ids[count++] = id;
     }
     best_two(scores, ids, count, words, true, reading);
@@ -387,5 +490,5 @@ void tmi_word_match(tmi_cells *cells, const tmi_words *words, tmi_reading *readi
             reading->unknown = true;
     }
     if (reading->id != TMI_NO_ID)
-        count_cells(cells, reading->id, reading);
+        count_cells(cells, reading);
 }

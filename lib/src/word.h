@@ -14,8 +14,9 @@ typedef struct tmi_cells {
 typedef struct tmi_reading {
     int32_t id;          /* TMI_NO_ID: nothing fits */
     float score;         /* correlation of the cells with the best word's, -1 to 1 */
-    float margin;        /* what the second best word's correlation is below that */
+    float odds;          /* what the second best word leaves unexplained, over what the best one does; 1 to 4 */
     uint8_t doubtful, corrected;  /* cells; see tapemark_cm */
+    uint8_t contrary;    /* cells that clearly show the opposite of what the word has there */
     bool unknown;        /* a list of known ids was given, and this is none of them */
 } tmi_reading;
 
@@ -29,8 +30,12 @@ typedef struct tmi_words {
 /* Turns the cells by half a turn: as seen by a reader who stands on the head. */
 void tmi_cells_turn(tmi_cells *cells);
 
-/* The word of at most four ones (or zeros, where most cells are dark) that fits best. Adjusts the scale of the
- * cells to the cells that all words share. */
-void tmi_word_match(tmi_cells *cells, const tmi_words *words, tmi_reading *reading);
+/* Correlation with what all words share, a quick measure of whether this way up is the right one. Adjusts the
+ * scale of the cells to it. */
+float tmi_blank_score(tmi_cells *cells);
+
+/* The word of at most four ones (or zeros, where most cells are dark) that fits best, for cells whose scale
+ * tmi_blank_score() has adjusted. */
+void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading);
 
 #endif
