@@ -163,20 +163,24 @@ static bool outline_moments(const outline *out, moments *m)
     return m->xx * m->yy - m->xy * m->xy > 1e-3f;
 }
 
-/* The turn of the square within its whitened outline: the distance from the centre varies four times around,
- * and is largest at the corners. Returns the unit vector of the side's normal. */
+/* The turn of the square within its whitened outline: the distance from the centre varies four times around, and
+ * is largest at the corners. Each point stands for the angle between its neighbours, for rays that are evenly
+ * spread in the image are not so once it is whitened. Returns the unit vector of the side's normal. */
 static tmi_point square_turn(const outline *out, const moments *m, const float inverse[3])
 {
+    float x[RAYS + 2], y[RAYS + 2], r[RAYS + 2]; /* whitened; the first two again at the end */
+    for (int i = 0; i < RAYS + 2; i++) {
+        const float px = out->x[i % RAYS] - m->x, py = out->y[i % RAYS] - m->y;
+        x[i] = inverse[0] * px + inverse[1] * py;
+        y[i] = inverse[1] * px + inverse[2] * py;
+        r[i] = real_max(1e-3f, real_sqrt(x[i] * x[i] + y[i] * y[i]));
+    }
     float re = 0, im = 0;
-    for (int i = 0; i < RAYS; i++) {
-        const float px = out->x[i] - m->x, py = out->y[i] - m->y;
-        const float x = inverse[0] * px + inverse[1] * py, y = inverse[1] * px + inverse[2] * py;
-        const float r2 = x * x + y * y;
-        if (r2 < 1e-6f)
-            continue;
-        const float c2 = (x * x - y * y) / r2, s2 = 2 * x * y / r2, r = real_sqrt(r2);
-        re += r * (c2 * c2 - s2 * s2);
-        im += r * 2 * s2 * c2;
+    for (int i = 1; i <= RAYS; i++) {
+        const float weight = (x[i - 1] * y[i + 1] - x[i + 1] * y[i - 1]) / (r[i - 1] * r[i + 1]);
+        const float c2 = (x[i] * x[i] - y[i] * y[i]) / (r[i] * r[i]), s2 = 2 * x[i] * y[i] / (r[i] * r[i]);
+        re += weight * r[i] * (c2 * c2 - s2 * s2);
+        im += weight * r[i] * 2 * s2 * c2;
     }
     /* Sides lie opposite to corners: the angle of (-re, -im), divided by four. */
     tmi_point turn = {-re, -im};
@@ -207,56 +211,83 @@ static void square_from_moments(const moments *m, const outline *out, tmi_point 
 
 /* ---- Fine location ------------------------------------------------------------------------------------ */
 
+/* Over less than this the image of an edge is one slope. */
+static const float fine_px = 2.5f;
+
 /* How far outwards from (u, v) the edge lies that should be there, in modules: where the gray value passes the
- * middle of what is half a module inside and outside. Blur is symmetric, so that this holds for blurred edges.
- * Weighted by the edge's contrast; edges of the wrong sign say nothing. */
-static float edge_offset(const tmi_view *view, const tmi_finder *f, float u, float v, tmi_point normal, float span,
-                         float *contrast)
+ * middle of what is `span` modules inside and outside. Blur is symmetric, so that this holds for blurred edges.
+ * Where that is more than the blur can be, the place is halved in first. */
+static float edge_offset(const tmi_view *view, const tmi_homography *map, float u, float v, tmi_point normal,
+                         float span, float *contrast, uint32_t *reads)
 {
-    const tmi_point at = tmi_at(f, u, v);
-    const float nx = span * (normal.x * f->right.x + normal.y * f->down.x);
-    const float ny = span * (normal.x * f->right.y + normal.y * f->down.y);
-    const float inside = tmi_sample(view, at.x - nx, at.y - ny), outside = tmi_sample(view, at.x + nx, at.y + ny);
-    const float here = tmi_sample(view, at.x, at.y);
-    *contrast = outside - inside;
-    const float half = 0.5f * (outside - inside);
-    const float offset = half != 0 ? span * (0.5f * (inside + outside) - here) / half : 0;
-    return offset > span ? span : offset < -span ? -span : offset;
+    const float du = span * normal.x, dv = span * normal.y;
+    tmi_point in = tmi_project(map, u - du, v - dv), out = tmi_project(map, u + du, v + dv);
+    float inside = tmi_sample(view, in.x, in.y), outside = tmi_sample(view, out.x, out.y);
+    const float middle = 0.5f * (inside + outside), rise = outside - inside;
+    float from = -span, to = span, length = real_max(real_abs(out.x - in.x), real_abs(out.y - in.y));
+    *contrast = rise;
+    *reads += 3;
+    if (length < fine_px) {
+        const tmi_point at = tmi_project(map, u, v);
+        const float offset = rise != 0 ? 2 * span * (middle - tmi_sample(view, at.x, at.y)) / rise : 0;
+        return real_max(-span, real_min(span, offset));
+    }
+    for (; length > 0.5f * fine_px; length *= 0.5f) {
+        const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
+        const float value = tmi_sample(view, at.x, at.y);
+        ++*reads;
+        if ((value - middle) * rise > 0) {
+            out = at;
+            outside = value;
+            to = 0.5f * (from + to);
+        } else {
+            in = at;
+            inside = value;
+            from = 0.5f * (from + to);
+        }
+    }
+    return outside != inside ? from + (to - from) * (middle - inside) / (outside - inside) : 0;
+}
+
+bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u0, float span, float contrast_min,
+                        tmi_offsets *out, uint32_t *reads)
+{
+    static const tmi_point normal[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    tmi_normal shift_u = {0}, shift_v = {0};
+    for (int ring = 0; ring < 3; ring++) {
+        const float r = 1.5f + (float)ring, sign = ring == 1 ? -1.0f : 1.0f;
+        for (int along = -1 - ring; along <= 1 + ring; along++)
+            for (int side = 0; side < 4; side++) {
+                const tmi_point n = normal[side];
+                const float u = n.x != 0 ? n.x * r : (float)along, v = n.x != 0 ? (float)along : n.y * r;
+                float contrast;
+                const float offset = edge_offset(view, map, u0 + u, v, n, span, &contrast, reads);
+                contrast *= sign; /* what lies outside of the light ring is darker */
+                if (contrast <= contrast_min)
+                    continue;
+                if (n.x != 0)
+                    tmi_normal_add(&shift_u, 1, u, v, n.x * offset, contrast);
+                else
+                    tmi_normal_add(&shift_v, 1, u, v, n.y * offset, contrast);
+            }
+    }
+    return tmi_normal_solve(&shift_u, out->u) && tmi_normal_solve(&shift_v, out->v);
 }
 
 /* One step of fitting the square to the edges of its three rings. `span` is how far to look, in modules. */
 static bool fit_step(const tmi_view *view, tmi_finder *f, float span, uint32_t *reads)
 {
-    tmi_normal shift_u = {0}, shift_v = {0}; /* each a constant, and how it grows with u and v */
-    const float least = 0.1f * (f->light - f->dark);
-    for (int ring = 0; ring < 3; ring++) {
-        const float r = 1.5f + (float)ring, sign = ring == 1 ? -1.0f : 1.0f;
-        for (int along = -1 - ring; along <= 1 + ring; along++)
-            for (int side = 0; side < 4; side++) {
-                static const tmi_point normal[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-                const tmi_point n = normal[side];
-                const float u = n.x != 0 ? n.x * r : (float)along, v = n.x != 0 ? (float)along : n.y * r;
-                float contrast;
-                const float offset = edge_offset(view, f, u, v, n, span, &contrast);
-                *reads += 3;
-                if (sign * contrast <= least)
-                    continue;
-                if (n.x != 0)
-                    tmi_normal_add(&shift_u, 1, u, v, n.x * offset, sign * contrast);
-                else
-                    tmi_normal_add(&shift_v, 1, u, v, n.y * offset, sign * contrast);
-            }
-    }
-    float du[3], dv[3];
-    if (!tmi_normal_solve(&shift_u, du) || !tmi_normal_solve(&shift_v, dv))
+    const tmi_homography map = {{f->right.x, f->down.x, f->centre.x, f->right.y, f->down.y, f->centre.y, 0, 0}};
+    tmi_offsets by;
+    if (!tmi_finder_offsets(view, &map, 0, span, 0.1f * (f->light - f->dark), &by, reads))
         return false;
     const tmi_finder old = *f;
-    f->centre = tmi_at(&old, du[0], dv[0]);
-    f->right = (tmi_point){(1 + du[1]) * old.right.x + dv[1] * old.down.x,
-                           (1 + du[1]) * old.right.y + dv[1] * old.down.y};
-    f->down = (tmi_point){du[2] * old.right.x + (1 + dv[2]) * old.down.x,
-                          du[2] * old.right.y + (1 + dv[2]) * old.down.y};
-    return real_abs(du[0]) < 1 && real_abs(dv[0]) < 1;
+    f->centre = tmi_at(&old, by.u[0], by.v[0]);
+    f->right = (tmi_point){(1 + by.u[1]) * old.right.x + by.v[1] * old.down.x,
+                           (1 + by.u[1]) * old.right.y + by.v[1] * old.down.y};
+    f->down = (tmi_point){by.u[2] * old.right.x + (1 + by.v[2]) * old.down.x,
+                          by.u[2] * old.right.y + (1 + by.v[2]) * old.down.y};
+    return real_abs(by.u[0]) < 1 && real_abs(by.v[0]) < 1;
 }
 
 /* ---- Score --------------------------------------------------------------------------------------------- */

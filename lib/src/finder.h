@@ -2,6 +2,7 @@
 #ifndef TAPEMARK_FINDER_H
 #define TAPEMARK_FINDER_H
 
+#include "homography.h"
 #include "view.h"
 
 #include <stdbool.h>
@@ -28,6 +29,17 @@ bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads
 /* Correlation of the 9 x 9 modules around it (light margin included) with the ideal pattern; sets score, dark
  * and light. */
 void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+
+/* How far the modules of a finder lie from where a map has them, in modules: a shift, and how it grows with u and
+ * v, both from the finder's centre. */
+typedef struct tmi_offsets {
+    float u[3], v[3];
+} tmi_offsets;
+
+/* Measures the offsets of the finder whose centre the map has at (u0, 0), from the edges of its three rings as far
+ * as they have this contrast. `span`, how far to look to both sides, is at most half a module. */
+bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u0, float span, float contrast_min,
+                        tmi_offsets *out, uint32_t *reads);
 
 static inline tmi_point tmi_at(const tmi_finder *finder, float u, float v)
 {

@@ -10,17 +10,18 @@ enum {
     FIRST_COLUMN = 5 /* u of the coding region's first column */
 };
 
-/* Square to quadrilateral, after Heckbert, "Fundamentals of Texture Mapping and Image Warping" (1989). */
-void tmi_homography_between(const tmi_finder *left, const tmi_finder *right, tmi_homography *out)
+/* ---- Location ---------------------------------------------------------------------------------------- */
+
+/* The map that takes (0, -3.5), (25, -3.5), (25, 3.5) and (0, 3.5) to these points. Square to quadrilateral, after
+ * Heckbert, "Fundamentals of Texture Mapping and Image Warping" (1989). */
+static void map_corners(const tmi_point p[4], tmi_homography *out)
 {
-    const tmi_point p0 = tmi_at(left, 0, -3.5f), p1 = tmi_at(right, 0, -3.5f);
-    const tmi_point p2 = tmi_at(right, 0, 3.5f), p3 = tmi_at(left, 0, 3.5f);
-    const float sx = p0.x - p1.x + p2.x - p3.x, sy = p0.y - p1.y + p2.y - p3.y;
-    const float dx1 = p1.x - p2.x, dy1 = p1.y - p2.y, dx2 = p3.x - p2.x, dy2 = p3.y - p2.y;
+    const float sx = p[0].x - p[1].x + p[2].x - p[3].x, sy = p[0].y - p[1].y + p[2].y - p[3].y;
+    const float dx1 = p[1].x - p[2].x, dy1 = p[1].y - p[2].y, dx2 = p[3].x - p[2].x, dy2 = p[3].y - p[2].y;
     const float det = dx1 * dy2 - dx2 * dy1;
     const float g = det != 0 ? (sx * dy2 - dx2 * sy) / det : 0, h = det != 0 ? (dx1 * sy - sx * dy1) / det : 0;
-    const float s[8] = {p1.x - p0.x + g * p1.x, p3.x - p0.x + h * p3.x, p0.x,
-                        p1.y - p0.y + g * p1.y, p3.y - p0.y + h * p3.y, p0.y, g, h};
+    const float s[8] = {p[1].x - p[0].x + g * p[1].x, p[3].x - p[0].x + h * p[3].x, p[0].x,
+                        p[1].y - p[0].y + g * p[1].y, p[3].y - p[0].y + h * p[3].y, p[0].y, g, h};
     /* The square's (s, t) are u / 25 and (v + 3.5) / 7. */
     const float w = 1 + 0.5f * s[7];
     for (int k = 0; k < 8; k += 3) {
@@ -31,11 +32,28 @@ void tmi_homography_between(const tmi_finder *left, const tmi_finder *right, tmi
     out->h[5] = (s[5] + 0.5f * s[4]) / w;
 }
 
-tmi_point tmi_project(const tmi_homography *map, float u, float v)
+/* Where the map's point (u0, v) really is, by what was measured around (u0, 0). */
+static tmi_point corrected(const tmi_homography *map, float u0, float v, const tmi_offsets *by)
 {
-    const float *h = map->h;
-    const float w = 1 / (h[6] * u + h[7] * v + 1);
-    return (tmi_point){(h[0] * u + h[1] * v + h[2]) * w, (h[3] * u + h[4] * v + h[5]) * w};
+    return tmi_project(map, u0 + by->u[0] + by->u[2] * v, v + by->v[0] + by->v[2] * v);
+}
+
+void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
+                    uint32_t *reads)
+{
+    const tmi_point seen[4] = {tmi_at(left, 0, -3.5f), tmi_at(right, 0, -3.5f), tmi_at(right, 0, 3.5f),
+                               tmi_at(left, 0, 3.5f)};
+    map_corners(seen, map);
+    const float contrast_min = 0.05f * (left->light - left->dark + right->light - right->dark);
+    for (int step = 0; step < 2; step++) {
+        tmi_offsets at_left, at_right;
+        if (!tmi_finder_offsets(view, map, 0, 0.4f, contrast_min, &at_left, reads) ||
+            !tmi_finder_offsets(view, map, PITCH, 0.4f, contrast_min, &at_right, reads))
+            return;
+        const tmi_point p[4] = {corrected(map, 0, -3.5f, &at_left), corrected(map, PITCH, -3.5f, &at_right),
+                                corrected(map, PITCH, 3.5f, &at_right), corrected(map, 0, 3.5f, &at_left)};
+        map_corners(p, map);
+    }
 }
 
 /* ---- Sampling ---------------------------------------------------------------------------------------- */

@@ -16,7 +16,7 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
     tapemark_stats *stats = &reader->result->stats;
     tmi_cells cells;
     stats->cms_tried++;
-    tmi_homography_between(&segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm]);
+    tmi_marker_map(reader->view, &segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm], &stats->work);
     for (int way = UPRIGHT; way <= TURNED; way++)
         segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1};
     if (!tmi_marker_sample(reader->view, &segment->maps[cm], reader->config->contrast_min, &cells, &stats->work))
