@@ -17,7 +17,7 @@ std::vector<frame> read_video(const std::string &path, const frame_range &range)
     setenv("OPENCV_FFMPEG_CAPTURE_OPTIONS", "threads;1", 1);
     if (!std::filesystem::is_regular_file(path))
         throw std::runtime_error(path + ": no such file");
-    cv::VideoCapture video(path);
+    cv::VideoCapture video(path, cv::CAP_FFMPEG);
     if (!video.isOpened())
         throw std::runtime_error(path + ": not a video that OpenCV can read");
     std::vector<frame> frames;

@@ -98,7 +98,8 @@ void tally::add(const tally &other)
 tape_truth::tape_truth(const std::string &path)
 {
     const std::string text = text_of(path);
-    const std::unique_ptr<cJSON, void (*)(cJSON *)> root(cJSON_ParseWithLength(text.data(), text.size()), cJSON_Delete);
+    const std::unique_ptr<cJSON, void (*)(cJSON *)> root(cJSON_ParseWithLength(text.data(), text.size()),
+                                                         cJSON_Delete);
     if (!cJSON_IsArray(root.get()))
         throw std::runtime_error(path + ": not a JSON array with an object for each frame");
     try {

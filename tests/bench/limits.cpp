@@ -45,7 +45,8 @@ bool check_times(const measurement &all, std::size_t r)
         return true;
     }
     const run *ours = all.find("tapemark", "tape");
-    bool kept = limit("time, against aruco on tape", *paired_ratio(ours, all.find("aruco", "tape")), share_of_aruco_max);
+    const double on_tape = *paired_ratio(ours, all.find("aruco", "tape"));
+    bool kept = limit("time, against aruco on tape", on_tape, share_of_aruco_max);
     const std::optional<double> own = paired_ratio(ours, all.find("aruco", "aruco"));
     if (own)
         kept = limit("time, against aruco on its own video", *own, share_of_aruco_max) && kept;

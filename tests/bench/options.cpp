@@ -65,7 +65,8 @@ frame_range parse_range(const std::string &text)
     const std::size_t colon = text.find(':', dots);
     frame_range range;
     range.first = parse_count("--frames", text.substr(0, dots));
-    range.last = parse_count("--frames", text.substr(dots + 2, colon == std::string::npos ? colon : colon - dots - 2));
+    const std::size_t last_length = colon == std::string::npos ? colon : colon - dots - 2;
+    range.last = parse_count("--frames", text.substr(dots + 2, last_length));
     if (colon != std::string::npos)
         range.step = parse_count("--frames", text.substr(colon + 1));
     if (range.first > range.last || range.step == 0)
@@ -107,7 +108,8 @@ options parse_options(int argc, char **argv)
     const std::map<std::string, std::function<void(const std::string &)>> with_value = {
         {"--data", [&](const std::string &text) { chosen.data_dir = text; }},
         {"--only", [&](const std::string &text) { chosen.readers = parse_list("--only", text, reader_names()); }},
-        {"--sources", [&](const std::string &text) { chosen.sources = parse_list("--sources", text, source_names()); }},
+        {"--sources",
+         [&](const std::string &text) { chosen.sources = parse_list("--sources", text, source_names()); }},
         {"--frames", [&](const std::string &text) { chosen.frames = parse_range(text); }},
         {"--repeat", [&](const std::string &text) { chosen.repeats = parse_count("--repeat", text); }},
         {"--clock", [&](const std::string &text) { chosen.clock = parse_clock(text); }},

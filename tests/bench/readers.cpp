@@ -23,7 +23,10 @@ public:
     {
     }
     std::string name() const override { return "tapemark"; }
-    std::string settings() const override { return std::string("version ") + tapemark_version() + ", defaults, no map"; }
+    std::string settings() const override
+    {
+        return std::string("version ") + tapemark_version() + ", defaults, no map";
+    }
     marker_kind reads() const override { return marker_kind::tape; }
     std::size_t workspace_bytes() const override { return workspace_.size(); }
     decode_counters counters() const override { return {result_.stats.work, result_.stats.limits}; }

@@ -37,8 +37,8 @@ void print_row(const reader &who, const source &where, const run &one)
     if (who.reads() == marker_kind::none)
         std::printf("\n");
     else
-        std::printf(" %9s %6zu %6zu  %s\n", count_of(one.score.frames_read, one.score.frames).c_str(), one.score.pairs,
-                    one.score.wrong, memory_text(who, one).c_str());
+        std::printf(" %9s %6zu %6zu  %s\n", count_of(one.score.frames_read, one.score.frames).c_str(),
+                    one.score.pairs, one.score.wrong, memory_text(who, one).c_str());
 }
 
 void print_table(const measurement &all)
@@ -56,8 +56,8 @@ void print_tape_score(const measurement &all)
     if (tape == nullptr)
         return;
     const tally &score = tape->score;
-    std::printf("\ntapemark on tape: a whole marker is in view in %zu of %zu frames; tape markers read %zu, whole ones "
-                "in view %zu\n(frame, marker) pairs wholly in view, by px per module:",
+    std::printf("\ntapemark on tape: a whole marker is in view in %zu of %zu frames; tape markers read %zu, whole "
+                "ones in view %zu\n(frame, marker) pairs wholly in view, by px per module:",
                 score.frames_with_marker, score.frames, score.tape_markers, score.tape_markers_whole);
     for (std::size_t i = 0; i < score.recall.size(); i++)
         std::printf("%s from %g: %s", i == 0 ? "" : ",", module_size_classes[i],
@@ -161,9 +161,9 @@ void print_report(const measurement &all, const options &chosen)
         std::printf("  %-11s %s\n", who->name().c_str(), who->settings().c_str());
     std::printf("\n");
     print_table(all);
-    std::printf("read: frames with at least one correct reading. tapemark on tape is held against ground truth; aruco on\n"
-                "its own video against the ids 0 to 56 that are there; everything else that is read is wrong. There is\n"
-                "no video with AprilTags: apriltag is here for its time.\n");
+    std::printf("read: frames with at least one correct reading. tapemark on tape is held against ground truth;\n"
+                "aruco on its own video against the ids 0 to 56 that are there; everything else that is read is\n"
+                "wrong. There is no video with AprilTags: apriltag is here for its time.\n");
     print_tape_score(all);
     print_wrong(all);
     if (chosen.repeats > 0) {
