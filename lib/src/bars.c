@@ -60,8 +60,8 @@ float tmi_bars_score(const tmi_view *view, tmi_bars_place place, uint32_t *reads
     return score;
 }
 
-/* Whether a block is light on this line: its mean against the middle between the light and dark of the finders
- * on both sides. */
+/* Whether a block is light on this line: its mean against what the finders on both sides show. Where a shadow's edge
+ * lies between those, light in the shadow is still to be told from dark in the light, as long as it can be. */
 static bool block_is_light(const tmi_reader *reader, const tmi_segment *segment, int cm, float v)
 {
     float sum = 0;
@@ -71,8 +71,9 @@ static bool block_is_light(const tmi_reader *reader, const tmi_segment *segment,
     }
     reader->result->stats.work += TAPEMARK_CELL_COLUMNS - 1;
     const tmi_finder *left = &segment->finders[cm], *right = left + 1;
-    const float middle = 0.25f * (left->dark + left->light + right->dark + right->light);
-    return sum > middle * (TAPEMARK_CELL_COLUMNS - 1);
+    const float light = real_min(left->light, right->light), dark = real_max(left->dark, right->dark);
+    const float mean = 0.25f * (left->dark + left->light + right->dark + right->light);
+    return sum > (light > dark ? 0.5f * (light + dark) : mean) * (TAPEMARK_CELL_COLUMNS - 1);
 }
 
 void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, tmi_tm_reading *out)

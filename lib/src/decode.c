@@ -125,7 +125,7 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     report_finders(&w->tape, result);
 
     const tmi_reader reader = {&view, &settings, result,
-                               {settings.id_max, settings.known_ids, settings.known_id_count}, settings.work_budget};
+                               {settings.id_max, settings.known_ids, settings.known_id_count}, {1, 0}};
     int next = 0, finders;
     while ((finders = tmi_tape_next_chain(&w->tape, &next, w->segment.finders)) > 0) {
         result->stats.segments++;

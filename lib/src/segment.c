@@ -32,13 +32,9 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
     }
 }
 
-/* Correlations below this say nothing about a CM; those of right readings have a median of 0.97. */
-static const float score_min = 0.8f;
-/* The second best word must leave this many times as much unexplained as the best one. Over some 8000 CMs of
- * rendered and real frames, a third of them below 1.5 px a module, no wrong word reached it. */
-static const float odds_min = 1.45f;
-/* Cells that show the opposite of the word: dirt, or a word that is none. */
-static const int contrary_max = 1;
+/* Bars have to correlate with ideal ones by this much. */
+static const float bars_min = 0.5f;
+
 /* Sum over the CMs by which one way up must fit better than the other. */
 static const float turn_min = 0.05f;
 
@@ -52,6 +48,56 @@ static float turn_evidence(const tmi_segment *segment, int first, int count)
             sum += upright - turned;
     }
     return sum;
+}
+
+/* ---- Which readings to believe ------------------------------------------------------------------------------ */
+
+/* Correlations below this say nothing about a CM; those of right readings have a median of 0.99. */
+static const float score_min = 0.8f;
+/* The second best word must leave this many times as much unexplained as the best one. Over some 8000 CMs of
+ * rendered and real frames, a third of them below 1.5 px a module, no wrong word of that score reached it. */
+static const float odds_min = 1.45f;
+/* What is enough where the next CM of the segment is sure and its id says the same, and what is needed where it says
+ * otherwise: ids ascend along a segment. */
+static const float odds_min_supported = 1.15f, odds_min_opposed = 2;
+/* Cells that show the opposite of the word: dirt, or a word that is none. */
+static const int contrary_max = 1;
+
+/* The id `steps` CMs further on, but for its sign. */
+static int32_t rank(const tmi_reading *reading, int steps)
+{
+    return (reading->id < 0 ? -reading->id : reading->id) + steps;
+}
+
+/* The reason not to believe a reading with these odds needed, or TAPEMARK_REJECT_COUNT when there is none. */
+static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *reading, float odds_needed)
+{
+    if (reading->id == TMI_NO_ID || reading->score < score_min || reading->contrary > contrary_max ||
+        tmi_reading_confidence(reading) < reader->config->confidence_min)
+        return TAPEMARK_REJECT_SCORE;
+    if (reading->odds < odds_needed)
+        return TAPEMARK_REJECT_MARGIN;
+    return reading->unknown ? TAPEMARK_REJECT_UNKNOWN_ID : TAPEMARK_REJECT_COUNT;
+}
+
+/* Judges the CM that stands at `cm` of the part first..last, read in the direction `step` (1 or -1) along the row. */
+static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readings, int cm, int first, int last, int step)
+{
+    const tmi_reading *own = &readings[cm];
+    bool supported = false, opposed = false;
+    for (int side = -1; side <= 1; side += 2) {
+        const int other = cm + side;
+        if (other < first || other > last || own->id == TMI_NO_ID ||
+            doubt(reader, &readings[other], odds_min) != TAPEMARK_REJECT_COUNT)
+            continue;
+        if (rank(own, side * step) == rank(&readings[other], 0))
+            supported = true;
+        else
+            opposed = true;
+    }
+    const float needed = supported ? odds_min_supported : opposed ? odds_min_opposed : odds_min;
+    const tapemark_reject reason = doubt(reader, own, needed);
+    return reason == TAPEMARK_REJECT_MARGIN && own->odds >= odds_min ? TAPEMARK_REJECT_CONFLICT : reason;
 }
 
 /* ---- Reporting --------------------------------------------------------------------------------------------- */
@@ -81,34 +127,13 @@ static bool inside(const tmi_view *view, const tapemark_point corners[4])
     return true;
 }
 
-/* The reason not to report a reading, or TAPEMARK_REJECT_COUNT when there is none. */
-static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *reading)
-{
-    if (reading->id == TMI_NO_ID || reading->score < score_min)
-        return TAPEMARK_REJECT_SCORE;
-    if (reading->contrary > contrary_max)
-        return TAPEMARK_REJECT_SCORE;
-    if (reading->odds < odds_min)
-        return TAPEMARK_REJECT_MARGIN;
-    if (reading->unknown)
-        return TAPEMARK_REJECT_UNKNOWN_ID;
-    if (reading->score < reader->config->confidence_min)
-        return TAPEMARK_REJECT_SCORE;
-    return TAPEMARK_REJECT_COUNT;
-}
-
 static void report_cm(const tmi_reader *reader, const tmi_segment *segment, int cm, bool turned, int tm, int slot)
 {
     tapemark_result *result = reader->result;
     const tmi_reading *reading = &segment->readings[turned][cm];
-    tapemark_cm out = {.id = reading->id, .confidence = real_min(1, reading->score), .doubtful_cells = reading->doubtful,
-                       .corrected_cells = reading->corrected, .tm = (int16_t)tm,
-                       .slot = (int16_t)(tm < 0 ? -1 : slot)};
-    const tapemark_reject reason = doubt(reader, reading);
-    if (reason != TAPEMARK_REJECT_COUNT) {
-        result->stats.rejects[reason]++;
-        return;
-    }
+    tapemark_cm out = {.id = reading->id, .confidence = tmi_reading_confidence(reading),
+                       .doubtful_cells = reading->doubtful, .corrected_cells = reading->corrected,
+                       .tm = (int16_t)tm, .slot = (int16_t)(tm == TMI_NONE ? -1 : slot)};
     set_corners(&segment->maps[cm], &segment->maps[cm], 3.5f, 28.5f, turned, out.corners);
     if (!inside(reader->view, out.corners))
         return;
@@ -120,73 +145,95 @@ static void report_cm(const tmi_reader *reader, const tmi_segment *segment, int 
     result->cms[result->cm_count++] = out;
 }
 
-/* The tape's direction in the image against the caller's hint: positive along it, 0 without a hint. */
+/* Whether the row runs as upright tapes do by the caller's hint: positive, or negative where it runs against it; 0
+ * without a hint or across it. */
 static float turn_hint(const tmi_reader *reader, const tmi_segment *segment, int first, int count)
 {
-    (void)reader; (void)segment; (void)first; (void)count;
-    return 0;
+    if (!reader->config->roll_known)
+        return 0;
+    const tmi_point from = segment->finders[first].centre, to = segment->finders[first + count].centre;
+    const float dx = to.x - from.x, dy = to.y - from.y, length = real_sqrt(dx * dx + dy * dy);
+    const float along = (reader->upright.x * dx + reader->upright.y * dy) / length;
+    return real_abs(along) > 0.2f ? along : 0;
 }
 
-/* Returns the TM's index, or TMI_NONE. */
-static int report_tm(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float turn)
+/* Whether the blocks of the TM are as light or dark as the CMs that were read. */
+static bool agrees(const tmi_segment *segment, const bool *believed, int first, int count, bool turned, uint32_t code)
 {
-    tapemark_result *result = reader->result;
-    tmi_tm_reading reading;
-    tmi_tm_read(reader, segment, first, count, &reading);
-    if (reading.vote < reader->config->vote_min) {
-        result->stats.rejects[TAPEMARK_REJECT_VOTE]++;
-        return TMI_NONE;
+    uint32_t known = 0, light = 0; /* the first CM's bit highest, as in the code */
+    for (int cm = first; cm < first + count; cm++) {
+        known = known << 1 | (believed[cm] ? 1u : 0u);
+        light = light << 1 | (segment->readings[turned][cm].id >= 0 ? 1u : 0u);
     }
-    if (result->tm_count == result->tm_capacity) {
-        result->stats.limits |= TAPEMARK_LIMIT_TMS;
-        return TMI_NONE;
-    }
-    if (real_abs(turn) < turn_min)
-        turn = turn_hint(reader, segment, first, count);
-    const bool turned = turn < 0;
-    tapemark_tm *out = &result->tms[result->tm_count];
-    *out = (tapemark_tm){.length = (uint8_t)count, .directed = real_abs(turn) >= turn_min, .vote = reading.vote,
-                         .confidence = real_min(1, reading.vote * real_min(1, 1.4f * reading.bars))};
-    for (int i = 0; i < count; i++) {
-        const int bit = turned ? i : count - 1 - i;
-        out->code[i] = reading.code >> bit & 1 ? '1' : '0';
-    }
-    const float ink = 3.5f + TAPEMARK_BAR_MODULES;
-    set_corners(&segment->maps[first], &segment->maps[first + count - 1], ink, TAPEMARK_CM_PITCH_MODULES + ink, turned,
-                out->corners);
-    return (int)result->tm_count++;
+    return ((code ^ light) & known) == 0;
 }
-
-/* ---- The segment ------------------------------------------------------------------------------------------- */
-
-static const float bars_min = 0.5f;
 
 static bool has_bars(const tmi_reader *reader, tmi_bars_place place)
 {
     return tmi_bars_score(reader->view, place, &reader->result->stats.work) >= bars_min;
 }
 
-static void read_part(const tmi_reader *reader, tmi_segment *segment, int first, int count)
+/* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
+ * where it runs the other way, and 0 where that is not known. Returns the TM's index, or TMI_NONE. */
+static int report_tm(const tmi_reader *reader, const tmi_segment *segment, const bool *believed, int first, int count,
+                     float turn)
+{
+    tapemark_result *result = reader->result;
+    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
+    const bool turned = turn < 0;
+    const float ink = 3.5f + TAPEMARK_BAR_MODULES;
+    tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0};
+    set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, out.corners);
+    if (!inside(reader->view, out.corners) || !has_bars(reader, (tmi_bars_place){left, 0, -1}) ||
+        !has_bars(reader, (tmi_bars_place){right, TAPEMARK_CM_PITCH_MODULES, 1})) {
+        result->stats.rejects[TAPEMARK_REJECT_BARS]++;
+        return TMI_NONE;
+    }
+    tmi_tm_reading reading;
+    tmi_tm_read(reader, segment, first, count, &reading);
+    if (reading.vote < reader->config->vote_min || !agrees(segment, believed, first, count, turned, reading.code)) {
+        result->stats.rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE
+                                                                      : TAPEMARK_REJECT_CONFLICT]++;
+        return TMI_NONE;
+    }
+    if (result->tm_count == result->tm_capacity) {
+        result->stats.limits |= TAPEMARK_LIMIT_TMS;
+        return TMI_NONE;
+    }
+    out.vote = reading.vote;
+    out.confidence = reading.vote * real_min(1, 1.4f * reading.bars);
+    for (int i = 0; i < count; i++)
+        out.code[i] = reading.code >> (turned ? i : count - 1 - i) & 1 ? '1' : '0';
+    result->tms[result->tm_count] = out;
+    return (int)result->tm_count++;
+}
+
+/* ---- The segment ------------------------------------------------------------------------------------------- */
+
+/* Reads the CMs first..first + count - 1, between which there are no bars. */
+static void read_part(const tmi_reader *reader, const tmi_segment *segment, int first, int count)
 {
     if (count == 0)
         return;
-    const float turn = turn_evidence(segment, first, count);
-    int tm = TMI_NONE;
-    if (count >= TAPEMARK_TM_MIN_CMS) {
-        const tmi_bars_place left = {&segment->maps[first], 0, -1};
-        const tmi_bars_place right = {&segment->maps[first + count - 1], TAPEMARK_CM_PITCH_MODULES, 1};
-        if (has_bars(reader, left) && has_bars(reader, right))
-            tm = report_tm(reader, segment, first, count, turn);
-        else
-            reader->result->stats.rejects[TAPEMARK_REJECT_BARS]++;
+    const float evidence = turn_evidence(segment, first, count);
+    const bool turned = evidence < 0, turn_is_clear = real_abs(evidence) >= turn_min;
+    bool believed[TAPEMARK_TM_MAX_CMS] = {false};
+    for (int cm = first; cm < first + count; cm++) {
+        const tapemark_reject reason =
+            turn_is_clear ? judge(reader, segment->readings[turned], cm, first, first + count - 1, turned ? -1 : 1)
+                          : TAPEMARK_REJECT_ALIGNMENT;
+        believed[cm] = reason == TAPEMARK_REJECT_COUNT;
+        if (!believed[cm])
+            reader->result->stats.rejects[reason]++;
     }
-    const bool turned = turn < 0;
-    for (int i = 0; i < count; i++) {
-        const int cm = turned ? first + count - 1 - i : first + i;
-        if (real_abs(turn) >= turn_min)
-            report_cm(reader, segment, cm, turned, tm, i);
-        else
-            reader->result->stats.rejects[TAPEMARK_REJECT_ALIGNMENT]++;
+    int tm = TMI_NONE;
+    if (count >= TAPEMARK_TM_MIN_CMS)
+        tm = report_tm(reader, segment, believed, first, count,
+                       turn_is_clear ? evidence : turn_hint(reader, segment, first, count));
+    for (int slot = 0; slot < count; slot++) {
+        const int cm = turned ? first + count - 1 - slot : first + slot;
+        if (believed[cm])
+            report_cm(reader, segment, cm, turned, tm, slot);
     }
 }
 
@@ -196,21 +243,20 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
 {
     if (real_max(segment->readings[UPRIGHT][cm].score, segment->readings[TURNED][cm].score) >= 0.7f)
         return false;
-    const tmi_bars_place left = {&segment->maps[cm], 0, 1};
-    const tmi_bars_place right = {&segment->maps[cm], TAPEMARK_CM_PITCH_MODULES, -1};
-    return has_bars(reader, left) && has_bars(reader, right);
+    return has_bars(reader, (tmi_bars_place){&segment->maps[cm], 0, 1}) &&
+           has_bars(reader, (tmi_bars_place){&segment->maps[cm], TAPEMARK_CM_PITCH_MODULES, -1});
 }
 
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
 {
-    segment->cm_count = finder_count - 1;
-    for (int cm = 0; cm < segment->cm_count; cm++)
+    const int cm_count = finder_count - 1;
+    for (int cm = 0; cm < cm_count; cm++)
         read_both_ways(reader, segment, cm);
     int first = 0;
-    for (int cm = 0; cm < segment->cm_count; cm++)
+    for (int cm = 0; cm < cm_count; cm++)
         if (is_joint(reader, segment, cm)) {
             read_part(reader, segment, first, cm - first);
             first = cm + 1;
         }
-    read_part(reader, segment, first, segment->cm_count - first);
+    read_part(reader, segment, first, cm_count - first);
 }

@@ -11,12 +11,11 @@ typedef struct tmi_reader {
     const tapemark_config *config; /* defaults filled in */
     tapemark_result *result;
     tmi_words words;
-    uint32_t work_max;
+    tmi_point upright; /* direction in which upright tapes read, by the caller's hint; a unit vector */
 } tmi_reader;
 
 /* Memory for one segment at a time; too large for the stack of a microcontroller. */
 typedef struct tmi_segment {
-    int cm_count;
     tmi_finder finders[TMI_MAX_CHAIN];
     tmi_homography maps[TAPEMARK_TM_MAX_CMS];
     tmi_reading readings[2][TAPEMARK_TM_MAX_CMS]; /* as the row runs, and standing on the head */

@@ -20,6 +20,12 @@ typedef struct tmi_reading {
     bool unknown;        /* a list of known ids was given, and this is none of them */
 } tmi_reading;
 
+/* 0 to 1: how much of the cells the word explains, and how much more than the next best one. */
+static inline float tmi_reading_confidence(const tmi_reading *reading)
+{
+    return reading->score > 0 ? reading->score * (1 - 1 / (reading->odds * reading->odds)) : 0;
+}
+
 /* Restrictions on the words that may be read; ids as in tapemark_config. */
 typedef struct tmi_words {
     int32_t id_max;
