@@ -1,0 +1,160 @@
+#include "geometry.h"
+
+#include <math.h>
+
+/* Nearer than this counts as behind the camera; in metres times focal lengths, far below any real depth. */
+static const double least_depth = 1e-6;
+
+/* Of a tape to be seen; the area of a module in the image times the third power of its depth. */
+static const double least_determinant = 1e-12;
+
+double radians(double degrees)
+{
+    return degrees * (3.14159265358979323846 / 180);
+}
+
+static scene_vector blend(double a, scene_vector u, double b, scene_vector v)
+{
+    return (scene_vector){a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
+}
+
+matrix camera_axes(const scene_camera *camera)
+{
+    double yaw = radians(camera->yaw_deg), pitch = radians(camera->pitch_deg), roll = radians(camera->roll_deg);
+    scene_vector right = {cos(yaw), 0, -sin(yaw)};
+    scene_vector ahead = {sin(yaw), 0, cos(yaw)};
+    scene_vector down = {0, 1, 0};
+
+    scene_vector pitched_ahead = blend(cos(pitch), ahead, -sin(pitch), down);
+    scene_vector pitched_down = blend(cos(pitch), down, sin(pitch), ahead);
+    scene_vector rolled_right = blend(cos(roll), right, sin(roll), pitched_down);
+    scene_vector rolled_down = blend(cos(roll), pitched_down, -sin(roll), right);
+    return (matrix){{{rolled_right.x, rolled_right.y, rolled_right.z},
+                     {rolled_down.x, rolled_down.y, rolled_down.z},
+                     {pitched_ahead.x, pitched_ahead.y, pitched_ahead.z}}};
+}
+
+scene_vector matrix_times(const matrix *m, scene_vector v)
+{
+    return (scene_vector){m->at[0][0] * v.x + m->at[0][1] * v.y + m->at[0][2] * v.z,
+                          m->at[1][0] * v.x + m->at[1][1] * v.y + m->at[1][2] * v.z,
+                          m->at[2][0] * v.x + m->at[2][1] * v.y + m->at[2][2] * v.z};
+}
+
+scene_vector transposed_times(const matrix *m, scene_vector v)
+{
+    return (scene_vector){m->at[0][0] * v.x + m->at[1][0] * v.y + m->at[2][0] * v.z,
+                          m->at[0][1] * v.x + m->at[1][1] * v.y + m->at[2][1] * v.z,
+                          m->at[0][2] * v.x + m->at[1][2] * v.y + m->at[2][2] * v.z};
+}
+
+/* Cofactor of the element in row i, column j. */
+static double cofactor(const matrix *m, int i, int j)
+{
+    int r = (i + 1) % 3, s = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+    return m->at[r][c] * m->at[s][d] - m->at[r][d] * m->at[s][c];
+}
+
+bool image_to_tape(const matrix *to_image, matrix *to_tape)
+{
+    double determinant = 0;
+    for (int j = 0; j < 3; j++)
+        determinant += to_image->at[0][j] * cofactor(to_image, 0, j);
+    if (determinant < least_determinant)
+        return false;
+
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            to_tape->at[j][i] = cofactor(to_image, i, j) / determinant;
+    }
+    return true;
+}
+
+matrix tape_to_image(const scene *view, const scene_tape *tape)
+{
+    const scene_camera *camera = &view->camera;
+    matrix axes = camera_axes(camera);
+    scene_vector columns[3] = {matrix_times(&axes, tape->along), matrix_times(&axes, tape->down),
+                               matrix_times(&axes, blend(1, tape->origin_m, -1, camera->position_m))};
+    double centre_x = (view->width_px - 1) / 2.0, centre_y = (view->height_px - 1) / 2.0;
+    matrix to_image;
+    for (int j = 0; j < 3; j++) {
+        double unit = j < 2 ? tape->module_m : 1;
+        to_image.at[0][j] = unit * (camera->focal_px * columns[j].x + centre_x * columns[j].z);
+        to_image.at[1][j] = unit * (camera->focal_px * columns[j].y + centre_y * columns[j].z);
+        to_image.at[2][j] = unit * columns[j].z;
+    }
+    return to_image;
+}
+
+static bool point_of(scene_vector homogeneous, tapemark_point *point)
+{
+    if (homogeneous.z < least_depth)
+        return false;
+    point->x_px = (float)(homogeneous.x / homogeneous.z);
+    point->y_px = (float)(homogeneous.y / homogeneous.z);
+    return true;
+}
+
+bool project(const matrix *to_image, double along, double across, tapemark_point *point)
+{
+    return point_of(matrix_times(to_image, (scene_vector){along, across, 1}), point);
+}
+
+/* Limits a coordinate to the image and a pixel around it before it becomes an integer. */
+static int32_t pixel_near(double coordinate, int32_t size_px)
+{
+    return (int32_t)floor(fmin(fmax(coordinate, -1), size_px) + 0.5);
+}
+
+static void extend_box(const scene *view, scene_vector homogeneous, pixel_box *box)
+{
+    tapemark_point point;
+    if (!point_of(homogeneous, &point))
+        return;
+    int32_t x = pixel_near((double)point.x_px, view->width_px), y = pixel_near((double)point.y_px, view->height_px);
+    box->left = x - 1 < box->left ? x - 1 : box->left;
+    box->top = y - 1 < box->top ? y - 1 : box->top;
+    box->right = x + 2 > box->right ? x + 2 : box->right;
+    box->bottom = y + 2 > box->bottom ? y + 2 : box->bottom;
+}
+
+bool project_box(const scene *view, const matrix *to_image, double left, double top, double right, double bottom,
+                 pixel_box *box)
+{
+    scene_vector corners[4] = {{left, top, 1}, {right, top, 1}, {right, bottom, 1}, {left, bottom, 1}};
+    for (int i = 0; i < 4; i++)
+        corners[i] = matrix_times(to_image, corners[i]);
+
+    *box = (pixel_box){view->width_px, view->height_px, 0, 0};
+    for (int i = 0; i < 4; i++) {
+        scene_vector a = corners[i], b = corners[(i + 1) % 4];
+        extend_box(view, a, box);
+        /* A side that passes the camera reaches as far as the least depth. */
+        if ((a.z < least_depth) != (b.z < least_depth)) {
+            double share = (least_depth - a.z) / (b.z - a.z);
+            scene_vector cut = blend(1 - share, a, share, b);
+            cut.z = least_depth;
+            extend_box(view, cut, box);
+        }
+    }
+    box->left = box->left < 0 ? 0 : box->left;
+    box->top = box->top < 0 ? 0 : box->top;
+    box->right = box->right > view->width_px ? view->width_px : box->right;
+    box->bottom = box->bottom > view->height_px ? view->height_px : box->bottom;
+    return box->left < box->right && box->top < box->bottom;
+}
+
+local_scale scale_at(const matrix *to_image, double along, double across)
+{
+    scene_vector p = matrix_times(to_image, (scene_vector){along, across, 1});
+    double x = p.x / p.z, y = p.y / p.z;
+    double a = (to_image->at[0][0] - x * to_image->at[2][0]) / p.z;
+    double b = (to_image->at[0][1] - x * to_image->at[2][1]) / p.z;
+    double c = (to_image->at[1][0] - y * to_image->at[2][0]) / p.z;
+    double d = (to_image->at[1][1] - y * to_image->at[2][1]) / p.z;
+
+    /* Singular values of [a b; c d] from their sum and their difference. */
+    double sum = hypot(a + d, c - b), difference = hypot(a - d, c + b);
+    return (local_scale){hypot(a, c), hypot(b, d), fabs(sum - difference) / 2};
+}

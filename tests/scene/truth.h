@@ -1,0 +1,9 @@
+/* What a scene's picture shows, and where. */
+#ifndef SCENE_TRUTH_H
+#define SCENE_TRUTH_H
+
+#include "scene.h"
+
+void find_truth(const scene *view, scene_truth *truth);
+
+#endif
