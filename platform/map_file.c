@@ -48,8 +48,8 @@ static void explain_place(const char *text, size_t offset, size_t size, error_te
         column = text[i] == '\n' ? 1 : column + 1;
         line += text[i] == '\n';
     }
-    error_text_set(error, "is not valid JSON: %s at line %zu, column %zu", offset < size ? "error" : "it ends too early",
-                   line, column);
+    error_text_set(error, "is not valid JSON: %s line %zu, column %zu",
+                   offset < size ? "error near" : "it ends too early at", line, column);
 }
 
 static cJSON *parse_text(const char *text, size_t size, error_text *error)
