@@ -1,13 +1,20 @@
 /* The way of a frame: tiles, scan lines, finder patterns, tapes, segments. */
+#include "real.h"
 #include "scan.h"
 #include "segment.h"
 #include "tiles.h"
 
-#include <string.h>
-
 /* Scan lines, across and down, are this far apart. A finder pattern of one pixel a module has a core of three, so
- * that a few are missed at that size; their neighbours on the tape foretell them. */
-enum { LINE_SPACING = 4 };
+ * that a few are missed at that size; their neighbours on the tape foretell them. The lines are visited in passes
+ * this far apart, so that where the work runs out it has been spread evenly over the image. */
+enum { LINE_SPACING = 4, PASS_SPACING = 16, PASSES = PASS_SPACING / LINE_SPACING };
+
+/* Parts of the work budget up to which lines are scanned, finder patterns tried and missing ones looked for; what
+ * is left is for reading. */
+enum { SCAN_PERCENT = 50, TRY_PERCENT = 70, GROW_PERCENT = 80 };
+
+/* Where more tiles than this part of the image have contrast, only those with the most are scanned. */
+enum { ACTIVE_PERCENT = 25 };
 
 /* A finder pattern found by itself has to correlate this well with the ideal one. */
 static const float lone_score = 0.6f;
@@ -36,7 +43,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 {
     if (!size_is_valid(width_px, height_px))
         return 0;
-    return 100000 + (uint32_t)width_px * (uint32_t)height_px / 4;
+    return 100000 + (uint32_t)width_px * (uint32_t)height_px / 6;
 }
 
 /* ---- From scan lines to finder patterns ---------------------------------------------------------------------- */
@@ -68,21 +75,111 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
         stats->rejects[TAPEMARK_REJECT_SHAPE]++;
 }
 
-static void scan_lines(tmi_tape *tape, const tmi_tiles *tiles)
+/* One pass over rows (or columns) that lie PASS_SPACING apart. False once the work for scanning is spent. */
+static bool scan_pass(seeker *s, const tmi_tiles *tiles, int32_t first, uint32_t work_max)
 {
-    const tmi_view *view = tape->view;
-    seeker rows = {tape, false}, columns = {tape, true};
-    for (int32_t y = 1; y < view->height; y += LINE_SPACING)
-        tape->stats->work += (uint32_t)tmi_scan_line(view->pixels + y * view->stride, 1, view->width, view->invert,
-                                                     tiles->swing + y / TAPEMARK_TILE_PX * tiles->pitch, 1, y, try_hit,
-                                                     &rows);
-    for (int32_t x = 1; x < view->width; x += LINE_SPACING)
-        tape->stats->work += (uint32_t)tmi_scan_line(view->pixels + x, view->stride, view->height, view->invert,
-                                                     tiles->swing + x / TAPEMARK_TILE_PX, tiles->pitch, x, try_hit,
-                                                     &columns);
+    const tmi_view *view = s->tape->view;
+    tapemark_stats *stats = s->tape->stats;
+    const int32_t lines = s->vertical ? view->width : view->height;
+    for (int32_t line = first; line < lines; line += PASS_SPACING) {
+        if (stats->work >= work_max)
+            return false;
+        const int32_t tile = line / TAPEMARK_TILE_PX;
+        const int32_t read =
+            s->vertical ? tmi_scan_line(view->pixels + line, view->stride, view->height, view->invert,
+                                        tiles->swing + tile, tiles->pitch, line, try_hit, s)
+                        : tmi_scan_line(view->pixels + line * view->stride, 1, view->width, view->invert,
+                                        tiles->swing + tile * tiles->pitch, 1, line, try_hit, s);
+        stats->work += (uint32_t)read;
+    }
+    return true;
 }
 
-/* ---- The whole ----------------------------------------------------------------------------------------------- */
+static void scan_lines(tmi_tape *tape, const tmi_tiles *tiles, uint32_t work_max)
+{
+    static const int32_t first[PASSES] = {1, 9, 5, 13};
+    seeker rows = {tape, false}, columns = {tape, true};
+    for (int pass = 0; pass < PASSES; pass++)
+        if (!scan_pass(&rows, tiles, first[pass], work_max) || !scan_pass(&columns, tiles, first[pass], work_max)) {
+            tape->stats->limits |= TAPEMARK_LIMIT_SCAN;
+            return;
+        }
+}
+
+/* ---- The call ------------------------------------------------------------------------------------------------- */
+
+static bool image_is_valid(const tapemark_image *image)
+{
+    return image && image->pixels && size_is_valid(image->width_px, image->height_px) &&
+           image->stride_bytes >= image->width_px;
+}
+
+static bool result_is_valid(const tapemark_result *result)
+{
+    return result && (result->cms || !result->cm_capacity) && (result->tms || !result->tm_capacity) &&
+           (result->finders || !result->finder_capacity);
+}
+
+static bool ids_ascend(const int32_t *ids, size_t count)
+{
+    for (size_t i = 1; i < count; i++)
+        if (ids[i - 1] >= ids[i])
+            return false;
+    return true;
+}
+
+/* Comparisons are written so that a NaN fails them. */
+static bool config_is_valid(const tapemark_config *c)
+{
+    return (c->vote_min == 0 || (c->vote_min > 0.5f && c->vote_min <= 1)) && c->roll_deg >= -360 && c->roll_deg <= 360 &&
+           (c->polarity == TAPEMARK_DARK_ON_LIGHT || c->polarity == TAPEMARK_LIGHT_ON_DARK) && c->confidence_min >= 0 &&
+           c->confidence_min <= 1 && c->id_max >= 0 && c->id_max <= TAPEMARK_MAX_ID &&
+           (c->known_ids || !c->known_id_count) && ids_ascend(c->known_ids, c->known_id_count);
+}
+
+static tapemark_config with_defaults(const tapemark_config *config, const tapemark_image *image)
+{
+    tapemark_config out = *config;
+    if (out.vote_min == 0)
+        out.vote_min = 0.7f;
+    if (out.contrast_min == 0)
+        out.contrast_min = 10;
+    if (out.id_max == 0)
+        out.id_max = TAPEMARK_MAX_ID;
+    if (out.work_budget == 0)
+        out.work_budget = tapemark_default_work_budget(image->width_px, image->height_px);
+    return out;
+}
+
+static tmi_view view_of(const tapemark_image *image, tapemark_polarity polarity)
+{
+    const bool inverted = polarity == TAPEMARK_LIGHT_ON_DARK;
+    return (tmi_view){image->pixels, image->width_px, image->height_px, image->stride_bytes,
+                      inverted ? 255 : 0, inverted ? -1.0f : 1.0f, inverted ? 255.0f : 0.0f};
+}
+
+/* A part of the budget; in 64 bits, for the budget may be anything. */
+static uint32_t part_of(uint32_t budget, uint32_t percent)
+{
+    return (uint32_t)((uint64_t)budget * percent / 100);
+}
+
+static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config *config, tapemark_stats *stats)
+{
+    tmi_tiles tiles;
+    const uint32_t all = (uint32_t)(tmi_tiles_bytes(view->width, view->height) / 3);
+    if (tmi_tiles_build(&tiles, view, config->contrast_min, part_of(all, ACTIVE_PERCENT), (uint8_t *)(w + 1)))
+        stats->limits |= TAPEMARK_LIMIT_SCAN;
+    stats->tiles = (uint32_t)(tiles.columns * tiles.rows);
+    stats->tiles_active = tiles.active;
+    w->tape.view = view;
+    w->tape.stats = stats;
+    w->tape.count = 0;
+    w->tape.work_max = part_of(config->work_budget, TRY_PERCENT);
+    scan_lines(&w->tape, &tiles, part_of(config->work_budget, SCAN_PERCENT));
+    w->tape.work_max = part_of(config->work_budget, GROW_PERCENT);
+    tmi_tape_link(&w->tape);
+}
 
 static void report_finders(const tmi_tape *tape, tapemark_result *result)
 {
@@ -93,43 +190,46 @@ static void report_finders(const tmi_tape *tape, tapemark_result *result)
     }
 }
 
+static tapemark_status status_of(const tapemark_result *result)
+{
+    if (result->stats.limits & (TAPEMARK_LIMIT_CMS | TAPEMARK_LIMIT_TMS))
+        return TAPEMARK_NO_ROOM;
+    if (result->cm_count + result->tm_count > 0)
+        return TAPEMARK_OK;
+    return result->stats.limits ? TAPEMARK_UNFINISHED : TAPEMARK_NOTHING_FOUND;
+}
+
 tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config,
                                 void *memory, size_t workspace_size, tapemark_result *result)
 {
-    static const tapemark_config zero = {0};
-    tapemark_config settings = config ? *config : zero;
-    if (settings.vote_min == 0) settings.vote_min = 0.7f;
-    if (settings.contrast_min == 0) settings.contrast_min = 10;
-    if (settings.id_max == 0) settings.id_max = TAPEMARK_MAX_ID;
-    if (settings.work_budget == 0) settings.work_budget = tapemark_default_work_budget(image->width_px, image->height_px);
+    static const tapemark_config defaults = {0};
+    if (!result_is_valid(result))
+        return TAPEMARK_BAD_CALL;
     result->cm_count = result->tm_count = result->finder_count = 0;
     result->stats = (tapemark_stats){0};
-    if (workspace_size < tapemark_workspace_bytes(image->width_px, image->height_px))
+    if (!image_is_valid(image))
+        return TAPEMARK_BAD_CALL;
+    if (!config_is_valid(config ? config : &defaults))
+        return TAPEMARK_BAD_CONFIG;
+    if (!memory || workspace_size < tapemark_workspace_bytes(image->width_px, image->height_px))
         return TAPEMARK_BAD_WORKSPACE;
+    if (image->width_px < TMI_SMALLEST_SIDE || image->height_px < TMI_SMALLEST_SIDE)
+        return TAPEMARK_NOTHING_FOUND;
 
-    const bool inverted = settings.polarity == TAPEMARK_LIGHT_ON_DARK;
-    const tmi_view view = {image->pixels, image->width_px, image->height_px, image->stride_bytes,
-                           inverted ? 255 : 0, inverted ? -1.0f : 1.0f, inverted ? 255.0f : 0.0f};
-    const uintptr_t misaligned = (uintptr_t)memory % _Alignof(workspace);
-    workspace *w = (workspace *)((uint8_t *)memory + (misaligned ? _Alignof(workspace) - misaligned : 0));
-    tmi_tiles tiles;
-    tmi_tiles_build(&tiles, &view, settings.contrast_min, UINT32_MAX, (uint8_t *)(w + 1));
-    w->tape.view = &view;
-    w->tape.stats = &result->stats;
-    w->tape.work_max = settings.work_budget;
-    w->tape.count = 0;
-    result->stats.tiles = (uint32_t)(tiles.columns * tiles.rows);
-    result->stats.tiles_active = tiles.active;
-    scan_lines(&w->tape, &tiles);
-    tmi_tape_link(&w->tape);
+    const tapemark_config settings = with_defaults(config ? config : &defaults, image);
+    const tmi_view view = view_of(image, settings.polarity);
+    const size_t misaligned = (uintptr_t)memory % _Alignof(workspace);
+    workspace *w = (workspace *)(void *)((uint8_t *)memory + (misaligned ? _Alignof(workspace) - misaligned : 0));
+    find_tapes(w, &view, &settings, &result->stats);
     report_finders(&w->tape, result);
 
-    const tmi_reader reader = {&view, &settings, result,
-                               {settings.id_max, settings.known_ids, settings.known_id_count}, {1, 0}};
+    const tmi_reader reader = {.view = &view, .config = &settings, .result = result,
+                               .words = {settings.id_max, settings.known_ids, settings.known_id_count},
+                               .upright = real_direction(settings.roll_deg)};
     int next = 0, finders;
     while ((finders = tmi_tape_next_chain(&w->tape, &next, w->segment.finders)) > 0) {
         result->stats.segments++;
         tmi_segment_read(&reader, &w->segment, finders);
     }
-    return result->cm_count + result->tm_count ? TAPEMARK_OK : TAPEMARK_NOTHING_FOUND;
+    return status_of(result);
 }

@@ -228,7 +228,7 @@ static float edge_offset(const tmi_view *view, const tmi_homography *map, float 
     *contrast = rise;
     *reads += 3;
     if (length < fine_px) {
-        const tmi_point at = tmi_project(map, u, v);
+        const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
         const float offset = rise != 0 ? 2 * span * (middle - tmi_sample(view, at.x, at.y)) / rise : 0;
         return real_max(-span, real_min(span, offset));
     }
@@ -274,8 +274,15 @@ bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u
     return tmi_normal_solve(&shift_u, out->u) && tmi_normal_solve(&shift_v, out->v);
 }
 
+float tmi_offsets_size(const tmi_offsets *by)
+{
+    return real_max(real_abs(by->u[0]), real_abs(by->v[0])) +
+           3.5f * real_max(real_max(real_abs(by->u[1]), real_abs(by->v[1])),
+                           real_max(real_abs(by->u[2]), real_abs(by->v[2])));
+}
+
 /* One step of fitting the square to the edges of its three rings. `span` is how far to look, in modules. */
-static bool fit_step(const tmi_view *view, tmi_finder *f, float span, uint32_t *reads)
+static bool fit_step(const tmi_view *view, tmi_finder *f, float span, float *moved, uint32_t *reads)
 {
     const tmi_homography map = {{f->right.x, f->down.x, f->centre.x, f->right.y, f->down.y, f->centre.y, 0, 0}};
     tmi_offsets by;
@@ -287,6 +294,7 @@ static bool fit_step(const tmi_view *view, tmi_finder *f, float span, uint32_t *
                            (1 + by.u[1]) * old.right.y + by.v[1] * old.down.y};
     f->down = (tmi_point){by.u[2] * old.right.x + (1 + by.v[2]) * old.down.x,
                           by.u[2] * old.right.y + (1 + by.v[2]) * old.down.y};
+    *moved = tmi_offsets_size(&by);
     return real_abs(by.u[0]) < 1 && real_abs(by.v[0]) < 1;
 }
 
@@ -298,13 +306,15 @@ static int ring_of(int u, int v)
     return a > b ? a : b;
 }
 
-void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+/* Correlation of samples at all (u, v) made of `count` coordinates with the ideal pattern. */
+static void score_raster(const tmi_view *view, tmi_finder *finder, const int8_t *coordinates, int count,
+                         uint32_t *reads)
 {
     float dark = 0, light = 0, squares = 0;
     int darks = 0, lights = 0;
-    for (int v = -4; v <= 4; v++)
-        for (int u = -4; u <= 4; u++) {
-            const int ring = ring_of(u, v);
+    for (int j = 0; j < count; j++)
+        for (int i = 0; i < count; i++) {
+            const int u = coordinates[i], v = coordinates[j], ring = ring_of(u, v);
             const tmi_point at = tmi_at(finder, (float)u, (float)v);
             const float value = tmi_sample(view, at.x, at.y);
             squares += value * value;
@@ -326,7 +336,25 @@ void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
     finder->score = variance > 1 ? explained / real_sqrt(variance) : 0;
 }
 
+void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+{
+    static const int8_t all[9] = {-4, -3, -2, -1, 0, 1, 2, 3, 4};
+    score_raster(view, finder, all, 9, reads);
+}
+
+void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+{
+    static const int8_t few[5] = {-3, -2, 0, 2, 3};
+    score_raster(view, finder, few, 5, reads);
+}
+
 /* ---- Entrances ----------------------------------------------------------------------------------------- */
+
+/* Modules; a fit that moved less is done. */
+static const float settled = 0.04f;
+
+/* Correlation that a square told from its outline has to have before it is fitted: true ones have 0.4 and more. */
+static const float outline_score = 0.25f;
 
 static float module_area(const tmi_finder *f)
 {
@@ -336,8 +364,9 @@ static float module_area(const tmi_finder *f)
 bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
 {
     static const float span[4] = {0.5f, 0.5f, 0.4f, 0.4f};
-    for (int step = 0; step < 4; step++)
-        if (!fit_step(view, finder, span[step], reads) || !(module_area(finder) > 0.3f))
+    float moved = 1;
+    for (int step = 0; step < 4 && moved > settled; step++)
+        if (!fit_step(view, finder, span[step], &moved, reads) || !(module_area(finder) > 0.3f))
             return false;
     tmi_finder_score(view, finder, reads);
     return true;
@@ -360,7 +389,6 @@ bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, f
     if (missing > 5 || !close_gaps(reach, &out) || !outline_moments(&out, &m))
         return false;
     square_from_moments(&m, &out, start, finder);
-    finder->dark = 0;
-    finder->light = contrast;
-    return tmi_finder_refine(view, finder, reads);
+    tmi_finder_score(view, finder, reads);
+    return finder->score >= outline_score && tmi_finder_refine(view, finder, reads);
 }

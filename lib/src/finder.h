@@ -30,11 +30,17 @@ bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads
  * and light. */
 void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
 
+/* The same from 25 modules, for comparing many places. */
+void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+
 /* How far the modules of a finder lie from where a map has them, in modules: a shift, and how it grows with u and
  * v, both from the finder's centre. */
 typedef struct tmi_offsets {
     float u[3], v[3];
 } tmi_offsets;
+
+/* How much the offsets move the finder's corners at most, roughly, in modules. */
+float tmi_offsets_size(const tmi_offsets *by);
 
 /* Measures the offsets of the finder whose centre the map has at (u0, 0), from the edges of its three rings as far
  * as they have this contrast. `span`, how far to look to both sides, is at most half a module. */

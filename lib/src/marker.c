@@ -38,6 +38,9 @@ static tmi_point corrected(const tmi_homography *map, float u0, float v, const t
     return tmi_project(map, u0 + by->u[0] + by->u[2] * v, v + by->v[0] + by->v[2] * v);
 }
 
+/* Modules; where the finders lie this near to where the map has them, it is good. */
+static const float settled = 0.06f;
+
 void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
                     uint32_t *reads)
 {
@@ -53,6 +56,8 @@ void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_find
         const tmi_point p[4] = {corrected(map, 0, -3.5f, &at_left), corrected(map, PITCH, -3.5f, &at_right),
                                 corrected(map, PITCH, 3.5f, &at_right), corrected(map, 0, 3.5f, &at_left)};
         map_corners(p, map);
+        if (tmi_offsets_size(&at_left) < settled && tmi_offsets_size(&at_right) < settled)
+            return;
     }
 }
 

@@ -18,7 +18,7 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
     stats->cms_tried++;
     tmi_marker_map(reader->view, &segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm], &stats->work);
     for (int way = UPRIGHT; way <= TURNED; way++)
-        segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1};
+        segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
     if (!tmi_marker_sample(reader->view, &segment->maps[cm], reader->config->contrast_min, &cells, &stats->work))
         return;
     tmi_cells turned = cells;
@@ -250,6 +250,10 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
 {
     const int cm_count = finder_count - 1;
+    if (reader->result->stats.work >= reader->config->work_budget) {
+        reader->result->stats.limits |= TAPEMARK_LIMIT_WORK;
+        return;
+    }
     for (int cm = 0; cm < cm_count; cm++)
         read_both_ways(reader, segment, cm);
     int first = 0;

@@ -153,7 +153,7 @@ static bool search(tmi_tape *tape, tmi_finder *finder)
         for (int u = -4; u <= 4; u++) {
             tmi_finder tried = guess;
             tried.centre = tmi_at(&guess, (float)u, (float)v);
-            tmi_finder_score(tape->view, &tried, &tape->stats->work);
+            tmi_finder_quick_score(tape->view, &tried, &tape->stats->work);
             if (tried.score > finder->score && tried.light > tried.dark)
                 *finder = tried;
         }
