@@ -35,13 +35,13 @@ static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stre
     return variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
 }
 
-/* Bars lie beyond what the homography was measured on, and the paper may stretch: the best of three scales. */
+/* Bars lie beyond what the homography was measured on, and perspective goes on: the best of a few scales. */
 static float best_stretch(const tmi_view *view, tmi_bars_place place, float *score, uint32_t *reads)
 {
-    static const float stretches[3] = {0.96f, 1, 1.04f};
+    static const float stretches[] = {0.92f, 0.96f, 1, 1.04f, 1.08f};
     float best = 1;
     *score = -1;
-    for (int s = 0; s < 3; s++) {
+    for (int s = 0; s < 5; s++) {
         float sum = 0;
         for (int i = 0; i < LINES; i += 2)
             sum += bars_on_line(view, place, stretches[s], line_v[i], reads);

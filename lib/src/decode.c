@@ -11,7 +11,7 @@ enum { LINE_SPACING = 4, PASS_SPACING = 16, PASSES = PASS_SPACING / LINE_SPACING
 
 /* Parts of the work budget up to which lines are scanned, finder patterns tried and missing ones looked for; what
  * is left is for reading. */
-enum { SCAN_PERCENT = 50, TRY_PERCENT = 70, GROW_PERCENT = 80 };
+enum { SCAN_PERCENT = 40, TRY_PERCENT = 70, GROW_PERCENT = 80 };
 
 /* Where more tiles than this part of the image have contrast, only those with the most are scanned. */
 enum { ACTIVE_PERCENT = 25 };
@@ -43,7 +43,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 {
     if (!size_is_valid(width_px, height_px))
         return 0;
-    return 100000 + (uint32_t)width_px * (uint32_t)height_px / 6;
+    return 160000 + (uint32_t)width_px * (uint32_t)height_px / 12;
 }
 
 /* ---- From scan lines to finder patterns ---------------------------------------------------------------------- */
@@ -75,6 +75,22 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
         stats->rejects[TAPEMARK_REJECT_SHAPE]++;
 }
 
+static tmi_scan row_of(const tmi_view *view, const tmi_tiles *tiles, int32_t y)
+{
+    const int32_t tile = y / TAPEMARK_TILE_PX;
+    return (tmi_scan){view->pixels + y * view->stride, 1, view->width, y, view->invert,
+                      tiles->swing + tile * tiles->pitch, 1,
+                      tiles->row_bits + tile * tiles->row_words, tiles->row_words};
+}
+
+static tmi_scan column_of(const tmi_view *view, const tmi_tiles *tiles, int32_t x)
+{
+    const int32_t tile = x / TAPEMARK_TILE_PX;
+    return (tmi_scan){view->pixels + x, view->stride, view->height, x, view->invert,
+                      tiles->swing + tile, tiles->pitch,
+                      tiles->column_bits + tile * tiles->column_words, tiles->column_words};
+}
+
 /* One pass over rows (or columns) that lie PASS_SPACING apart. False once the work for scanning is spent. */
 static bool scan_pass(seeker *s, const tmi_tiles *tiles, int32_t first, uint32_t work_max)
 {
@@ -84,13 +100,8 @@ static bool scan_pass(seeker *s, const tmi_tiles *tiles, int32_t first, uint32_t
     for (int32_t line = first; line < lines; line += PASS_SPACING) {
         if (stats->work >= work_max)
             return false;
-        const int32_t tile = line / TAPEMARK_TILE_PX;
-        const int32_t read =
-            s->vertical ? tmi_scan_line(view->pixels + line, view->stride, view->height, view->invert,
-                                        tiles->swing + tile, tiles->pitch, line, try_hit, s)
-                        : tmi_scan_line(view->pixels + line * view->stride, 1, view->width, view->invert,
-                                        tiles->swing + tile * tiles->pitch, 1, line, try_hit, s);
-        stats->work += (uint32_t)read;
+        const tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
+        stats->work += (uint32_t)tmi_scan_line(&scan, try_hit, s);
     }
     return true;
 }
@@ -167,10 +178,10 @@ static uint32_t part_of(uint32_t budget, uint32_t percent)
 static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config *config, tapemark_stats *stats)
 {
     tmi_tiles tiles;
-    const uint32_t all = (uint32_t)(tmi_tiles_bytes(view->width, view->height) / 3);
-    if (tmi_tiles_build(&tiles, view, config->contrast_min, part_of(all, ACTIVE_PERCENT), (uint8_t *)(w + 1)))
+    stats->tiles = (uint32_t)((view->width + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX *
+                              ((view->height + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX));
+    if (tmi_tiles_build(&tiles, view, config->contrast_min, part_of(stats->tiles, ACTIVE_PERCENT), w + 1))
         stats->limits |= TAPEMARK_LIMIT_SCAN;
-    stats->tiles = (uint32_t)(tiles.columns * tiles.rows);
     stats->tiles_active = tiles.active;
     w->tape.view = view;
     w->tape.stats = stats;

@@ -284,7 +284,7 @@ float tmi_offsets_size(const tmi_offsets *by)
 /* One step of fitting the square to the edges of its three rings. `span` is how far to look, in modules. */
 static bool fit_step(const tmi_view *view, tmi_finder *f, float span, float *moved, uint32_t *reads)
 {
-    const tmi_homography map = {{f->right.x, f->down.x, f->centre.x, f->right.y, f->down.y, f->centre.y, 0, 0}};
+    const tmi_homography map = tmi_finder_map(f);
     tmi_offsets by;
     if (!tmi_finder_offsets(view, &map, 0, span, 0.1f * (f->light - f->dark), &by, reads))
         return false;

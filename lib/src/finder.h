@@ -33,6 +33,12 @@ void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
 /* The same from 25 modules, for comparing many places. */
 void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
 
+/* The finder's modules to pixels, (0, 0) at its centre. */
+static inline tmi_homography tmi_finder_map(const tmi_finder *f)
+{
+    return (tmi_homography){{f->right.x, f->down.x, f->centre.x, f->right.y, f->down.y, f->centre.y, 0, 0}};
+}
+
 /* How far the modules of a finder lie from where a map has them, in modules: a shift, and how it grows with u and
  * v, both from the finder's centre. */
 typedef struct tmi_offsets {

@@ -112,26 +112,27 @@ static int32_t next_turn(const scan_line *scan, int32_t from, int32_t end, int l
     return i;
 }
 
-int32_t tmi_scan_line(const uint8_t *pixels, ptrdiff_t step, int32_t length, uint8_t invert, const uint8_t *swing,
-                      ptrdiff_t swing_step, int32_t line, tmi_hit_function on_hit, void *context)
+int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *context)
 {
-    scan_line scan = {.pixels = pixels, .step = step, .invert = invert, .previous = NO_EXTREME, .rising = 1};
+    scan_line scan = {.pixels = line->pixels, .step = line->step, .invert = line->invert, .previous = NO_EXTREME,
+                      .rising = 1};
     int32_t read = 0;
     int extreme = 0;
-    for (int32_t start = 0; start < length; start += TILE, swing += swing_step) {
-        if (!*swing)
-            continue;
-        const int32_t end = length - start < TILE ? length : start + TILE;
-        read += end - start;
-        for (int32_t i = start; (i = next_turn(&scan, i, end, *swing, &extreme)) < end; i++) {
-            finish_extreme(&scan, extreme, i);
-            extreme = gray(&scan, i);
-            report(&scan, line, on_hit, context);
+    for (int32_t word = 0; word < line->words; word++)
+        for (uint32_t bits = line->active[word]; bits; bits &= bits - 1) {
+            const int32_t tile = 32 * word + __builtin_ctz(bits), start = tile * TILE;
+            const int32_t end = line->length - start < TILE ? line->length : start + TILE;
+            const int swing = line->swing[tile * line->swing_step];
+            read += end - start;
+            for (int32_t i = start; (i = next_turn(&scan, i, end, swing, &extreme)) < end; i++) {
+                finish_extreme(&scan, extreme, i);
+                extreme = gray(&scan, i);
+                report(&scan, line->number, on_hit, context);
+            }
         }
-    }
     if (scan.rising && scan.previous != NO_EXTREME) { /* the light margin of a pattern at the line's end */
-        finish_extreme(&scan, extreme, length);
-        report(&scan, line, on_hit, context);
+        finish_extreme(&scan, extreme, line->length);
+        report(&scan, line->number, on_hit, context);
     }
     return read;
 }

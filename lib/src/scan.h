@@ -13,9 +13,19 @@ typedef struct tmi_hit {
 
 typedef void (*tmi_hit_function)(void *context, int32_t line, const tmi_hit *hit);
 
-/* Scans `length` pixels of a line in the tiles whose swing is not zero; across flat tiles runs go on.
- * Returns the number of pixels read. */
-int32_t tmi_scan_line(const uint8_t *pixels, ptrdiff_t step, int32_t length, uint8_t invert, const uint8_t *swing,
-                      ptrdiff_t swing_step, int32_t line, tmi_hit_function on_hit, void *context);
+/* A row or a column of the image, and the tiles that it runs through. */
+typedef struct tmi_scan {
+    const uint8_t *pixels;
+    ptrdiff_t step;         /* from one pixel of the line to the next */
+    int32_t length, number; /* px; and which line it is, for on_hit */
+    uint8_t invert;         /* see tmi_view */
+    const uint8_t *swing;   /* of its first tile; see tmi_tiles */
+    ptrdiff_t swing_step;
+    const uint32_t *active; /* one bit a tile: those with a swing */
+    int32_t words;
+} tmi_scan;
+
+/* Scans a line in its active tiles; across flat ones runs go on. Returns the number of pixels read. */
+int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *context);
 
 #endif

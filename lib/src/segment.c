@@ -33,7 +33,7 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
 }
 
 /* Bars have to correlate with ideal ones by this much. */
-static const float bars_min = 0.5f;
+static const float bars_min = 0.62f;
 
 /* Sum over the CMs by which one way up must fit better than the other. */
 static const float turn_min = 0.05f;
@@ -237,14 +237,16 @@ static void read_part(const tmi_reader *reader, const tmi_segment *segment, int 
     }
 }
 
-/* Two TMs may hang so that the last finder of one is a CM's length from the first of the next: then there are
- * bars between them instead of a coding region. */
+/* Two pieces may hang so that the last finder of one is a CM's length from the first of the next: then there are
+ * bars between them instead of a coding region, on one side at least. Coding regions correlate with bars by 0.4. */
 static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int cm)
 {
     if (real_max(segment->readings[UPRIGHT][cm].score, segment->readings[TURNED][cm].score) >= 0.7f)
         return false;
-    return has_bars(reader, (tmi_bars_place){&segment->maps[cm], 0, 1}) &&
-           has_bars(reader, (tmi_bars_place){&segment->maps[cm], TAPEMARK_CM_PITCH_MODULES, -1});
+    /* What is between is not 25 modules long, so that the map between says nothing: each finder for itself. */
+    const tmi_homography left = tmi_finder_map(&segment->finders[cm]);
+    const tmi_homography right = tmi_finder_map(&segment->finders[cm + 1]);
+    return has_bars(reader, (tmi_bars_place){&left, 0, 1}) || has_bars(reader, (tmi_bars_place){&right, 0, -1});
 }
 
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)

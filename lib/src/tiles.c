@@ -9,11 +9,6 @@ static int32_t tiles_across(int32_t pixels)
     return (pixels + TILE - 1) / TILE;
 }
 
-size_t tmi_tiles_bytes(int32_t width, int32_t height)
-{
-    return 3 * ((size_t)tiles_across(width) + 2) * ((size_t)tiles_across(height) + 2);
-}
-
 /* Every other row is read: the first pass runs over the whole frame, and what it must not miss, a finder pattern,
  * is seven rows high at least. */
 enum { ROW_STEP = 2, ROWS_READ = TILE / ROW_STEP, STRIP = 32 * TILE };
@@ -124,18 +119,31 @@ static uint8_t edge_swing(const uint8_t *low, const uint8_t *high, ptrdiff_t pit
     return (uint8_t)(swing > 4 ? swing : 4);
 }
 
-bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
-                     uint8_t *memory)
+static void lay_out(tmi_tiles *tiles, const tmi_view *view, void *memory)
 {
     tiles->columns = tiles_across(view->width);
     tiles->rows = tiles_across(view->height);
     tiles->pitch = tiles->columns + 2;
-    const size_t plane = tmi_tiles_bytes(view->width, view->height) / 3;
-    memset(memory, 255, plane); /* the border's darkest and lightest pixel never win */
-    memset(memory + plane, 0, 2 * plane);
-    tiles->low = memory + tiles->pitch + 1;
+    tiles->row_words = (tiles->columns + 31) / 32;
+    tiles->column_words = (tiles->rows + 31) / 32;
+    const size_t bit_words = (size_t)tiles->rows * (size_t)tiles->row_words +
+                             (size_t)tiles->columns * (size_t)tiles->column_words;
+    const size_t plane = (size_t)tiles->pitch * ((size_t)tiles->rows + 2);
+    tiles->row_bits = memory;
+    tiles->column_bits = tiles->row_bits + (size_t)tiles->rows * (size_t)tiles->row_words;
+    uint8_t *planes = (uint8_t *)(tiles->row_bits + bit_words);
+    memset(memory, 0, bit_words * sizeof(uint32_t));
+    memset(planes, 255, plane); /* the border's darkest and lightest pixel never win */
+    memset(planes + plane, 0, 2 * plane);
+    tiles->low = planes + tiles->pitch + 1;
     tiles->high = tiles->low + plane;
     tiles->swing = tiles->high + plane;
+}
+
+bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
+                     void *memory)
+{
+    lay_out(tiles, view, memory);
     for (int32_t y = 0; y < tiles->rows; y++)
         tile_row_extremes(view, y, tiles->low + y * tiles->pitch, tiles->high + y * tiles->pitch);
 
@@ -145,7 +153,11 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
         for (int32_t x = 0; x < tiles->columns; x++) {
             const ptrdiff_t i = y * tiles->pitch + x;
             tiles->swing[i] = edge_swing(tiles->low + i, tiles->high + i, tiles->pitch, bar);
-            tiles->active += tiles->swing[i] != 0;
+            if (!tiles->swing[i])
+                continue;
+            tiles->active++;
+            tiles->row_bits[y * tiles->row_words + x / 32] |= 1u << (x % 32);
+            tiles->column_bits[x * tiles->column_words + y / 32] |= 1u << (y % 32);
         }
     return bar > contrast_min;
 }

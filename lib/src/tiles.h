@@ -11,17 +11,18 @@ typedef struct tmi_tiles {
     uint8_t *low;   /* darkest pixel */
     uint8_t *high;  /* lightest pixel */
     uint8_t *swing; /* least change that counts as an edge in this tile; 0: too flat to be scanned */
+    /* One bit a tile that has a swing, the first tile in the lowest bit: each row of tiles, and each column, begins
+     * a new word. They let scan lines leap over flat parts. */
+    uint32_t *row_bits, *column_bits;
     int32_t columns, rows;
     ptrdiff_t pitch;     /* from one row of tiles to the next */
+    int32_t row_words, column_words;
     uint32_t active;     /* tiles with a swing */
 } tmi_tiles;
 
-/* The planes' bytes for an image of this size, three a tile. */
-size_t tmi_tiles_bytes(int32_t width, int32_t height);
-
-/* Lays the planes out in `memory` and fills them. At most `active_max` tiles stay active: where more have
+/* Lays everything out in `memory`, aligned for uint32_t and of TMI_TILES_BYTES at least, and fills it. At most `active_max` tiles stay active: where more have
  * contrast_min, the bar is raised to what leaves few enough. Returns whether that was needed. */
 bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
-                     uint8_t *memory);
+                     void *memory);
 
 #endif
