@@ -16,23 +16,46 @@ static const float line_v[LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f
 /* A line counts when its samples correlate with ideal bars at both ends by this much. */
 static const float line_bars_min = 0.3f;
 
+/* Bars closer than this, in px a module, need not be seen one by one. */
+static const float unresolved_px = 1.5f;
+
+static bool is_unresolved(tmi_bars_place place)
+{
+    const tmi_point a = tmi_project(place.map, place.u, 0), b = tmi_project(place.map, place.u + place.direction, 0);
+    return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) < unresolved_px * unresolved_px;
+}
+
+/* Bars too fine to be resolved: half as dark as dark modules, then light. Coding regions are either much darker or
+ * much lighter than that. */
+static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
+{
+    float bars = 0;
+    for (int i = 1; i < 8; i++)
+        bars += value[i] * (1.0f / 7);
+    const float scale = 1 / real_max(1, finder->light - finder->dark);
+    const float gray = (finder->light - bars) * scale;
+    const float quiet = (finder->light - 0.5f * (value[BAR_SAMPLES - 2] + value[BAR_SAMPLES - 1])) * scale;
+    return quiet < 0.4f ? 1 - 3 * real_abs(gray - 0.55f) : 0;
+}
+
 static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)
 {
-    float sum = 0, squares = 0, dark = 0;
+    float value[BAR_SAMPLES], sum = 0, squares = 0, dark = 0;
     for (int i = 0; i < BAR_SAMPLES; i++) {
         const float reach = stretch * (float)(BAR_FIRST + i);
         const tmi_point at = tmi_project(place.map, place.u + place.direction * reach, v);
-        const float value = tmi_sample(view, at.x, at.y);
-        sum += value;
-        squares += value * value;
+        value[i] = tmi_sample(view, at.x, at.y);
+        sum += value[i];
+        squares += value[i] * value[i];
         if ((i & 1) && i < 8)
-            dark += value;
+            dark += value[i];
     }
     *reads += BAR_SAMPLES;
     const float n = BAR_SAMPLES, darks = 4;
     const float variance = squares - sum * sum / n;
     const float difference = (sum - dark) / (n - darks) - dark / darks;
-    return variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
+    const float sharp = variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
+    return is_unresolved(place) ? real_max(sharp, gray_bars(value, place.finder)) : sharp;
 }
 
 /* Bars lie beyond what the homography was measured on, and perspective goes on: the best of a few scales. */
@@ -60,47 +83,74 @@ float tmi_bars_score(const tmi_view *view, tmi_bars_place place, uint32_t *reads
     return score;
 }
 
-/* Whether a block is light on this line: its mean against what the finders on both sides show. Where a shadow's edge
- * lies between those, light in the shadow is still to be told from dark in the light, as long as it can be. */
-static bool block_is_light(const tmi_reader *reader, const tmi_segment *segment, int cm, float v)
+static float sample_at(const tmi_reader *reader, const tmi_homography *map, float u, float v)
 {
+    const tmi_point at = tmi_project(map, u, v);
+    reader->result->stats.work++;
+    return tmi_sample(reader->view, at.x, at.y);
+}
+
+typedef enum block { BLOCK_DARK = 0, BLOCK_LIGHT = 1, BLOCK_UNSURE = 2 } block;
+
+/* What a block is on this line: its mean against what the finders on both sides show. Where a shadow's edge lies
+ * between those, light in the shadow is still to be told from dark in the light, as long as it can be; but a block
+ * that is not clearly darker than the light gaps beside it is none that is dark. */
+static block block_on_line(const tmi_reader *reader, const tmi_segment *segment, int cm, float v)
+{
+    const tmi_homography *map = &segment->maps[cm];
     float sum = 0;
-    for (int column = 1; column < TAPEMARK_CELL_COLUMNS; column++) {
-        const tmi_point at = tmi_project(&segment->maps[cm], (float)(5 + column), v);
-        sum += tmi_sample(reader->view, at.x, at.y);
-    }
-    reader->result->stats.work += TAPEMARK_CELL_COLUMNS - 1;
+    for (int column = 1; column < TAPEMARK_CELL_COLUMNS; column++)
+        sum += sample_at(reader, map, (float)(5 + column), v);
+    const float value = sum * (1.0f / (TAPEMARK_CELL_COLUMNS - 1));
     const tmi_finder *left = &segment->finders[cm], *right = left + 1;
     const float light = real_min(left->light, right->light), dark = real_max(left->dark, right->dark);
     const float mean = 0.25f * (left->dark + left->light + right->dark + right->light);
-    return sum > (light > dark ? 0.5f * (light + dark) : mean) * (TAPEMARK_CELL_COLUMNS - 1);
+    if (value > (light > dark ? 0.5f * (light + dark) : mean))
+        return BLOCK_LIGHT;
+    const float gap = real_min(sample_at(reader, map, 4, v), sample_at(reader, map, PITCH - 4, v));
+    const float darkest = real_min(left->dark, right->dark);
+    return value - darkest < 0.85f * (gap - darkest) ? BLOCK_DARK : BLOCK_UNSURE;
+}
+
+/* The code on this line; false where a block is unsure. */
+static bool code_on_line(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float v,
+                         uint32_t *code)
+{
+    *code = 0;
+    for (int cm = first; cm < first + count; cm++) {
+        const block b = block_on_line(reader, segment, cm, v);
+        if (b == BLOCK_UNSURE)
+            return false;
+        *code = *code << 1 | (uint32_t)b;
+    }
+    return true;
 }
 
 void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, tmi_tm_reading *out)
 {
     uint32_t *reads = &reader->result->stats.work;
-    const tmi_bars_place left = {&segment->maps[first], 0, -1};
-    const tmi_bars_place right = {&segment->maps[first + count - 1], PITCH, 1};
+    const int last = first + count - 1;
+    const tmi_bars_place left = {&segment->maps[first], &segment->finders[first], 0, -1};
+    const tmi_bars_place right = {&segment->maps[last], &segment->finders[last + 1], PITCH, 1};
     float score_left, score_right;
     const float stretch_left = best_stretch(reader->view, left, &score_left, reads);
     const float stretch_right = best_stretch(reader->view, right, &score_right, reads);
     out->bars = real_min(score_left, score_right);
     uint32_t codes[LINES];
-    int lines = 0;
+    int lines = 0, clear = 0;
     for (int i = 0; i < LINES; i++) {
         const float v = line_v[i];
         if (bars_on_line(reader->view, left, stretch_left, v, reads) < line_bars_min ||
             bars_on_line(reader->view, right, stretch_right, v, reads) < line_bars_min)
             continue;
-        uint32_t code = 0;
-        for (int cm = first; cm < first + count; cm++)
-            code = code << 1 | block_is_light(reader, segment, cm, v);
-        codes[lines++] = code;
+        lines++;
+        if (code_on_line(reader, segment, first, count, v, &codes[clear]))
+            clear++;
     }
     int most = 0;
-    for (int i = 0; i < lines; i++) {
+    for (int i = 0; i < clear; i++) {
         int same = 0;
-        for (int j = 0; j < lines; j++)
+        for (int j = 0; j < clear; j++)
             same += codes[j] == codes[i];
         if (same > most) {
             most = same;

@@ -10,14 +10,15 @@ typedef struct tmi_tm_reading {
     float bars;     /* correlation of the weaker end with ideal bars */
 } tmi_tm_reading;
 
-/* Where bars may be: beside the finder whose centre is at u (of a CM's modules), to the right or to the left. */
+/* Where bars may be: beside a finder, whose centre is at u by the map, to the right or to the left. */
 typedef struct tmi_bars_place {
     const tmi_homography *map;
+    const tmi_finder *finder;
     float u;
     float direction; /* 1 or -1 */
 } tmi_bars_place;
 
-/* Correlation of what is there with four bars, over the whole height of the tape. */
+/* How much what is there looks like four bars, over the whole height of the tape; at most 1. */
 float tmi_bars_score(const tmi_view *view, tmi_bars_place place, uint32_t *reads);
 
 /* Reads the CMs first..first + count - 1 of the segment, as the row runs, on several lines across the tape. */

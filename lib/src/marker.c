@@ -12,9 +12,9 @@ enum {
 
 /* ---- Location ---------------------------------------------------------------------------------------- */
 
-/* The map that takes (0, -3.5), (25, -3.5), (25, 3.5) and (0, 3.5) to these points. Square to quadrilateral, after
+/* The map that takes (0, -3.5), (length, -3.5), (length, 3.5) and (0, 3.5) to these points. Square to quadrilateral, after
  * Heckbert, "Fundamentals of Texture Mapping and Image Warping" (1989). */
-static void map_corners(const tmi_point p[4], tmi_homography *out)
+static void map_corners(const tmi_point p[4], float length, tmi_homography *out)
 {
     const float sx = p[0].x - p[1].x + p[2].x - p[3].x, sy = p[0].y - p[1].y + p[2].y - p[3].y;
     const float dx1 = p[1].x - p[2].x, dy1 = p[1].y - p[2].y, dx2 = p[3].x - p[2].x, dy2 = p[3].y - p[2].y;
@@ -22,10 +22,10 @@ static void map_corners(const tmi_point p[4], tmi_homography *out)
     const float g = det != 0 ? (sx * dy2 - dx2 * sy) / det : 0, h = det != 0 ? (dx1 * sy - sx * dy1) / det : 0;
     const float s[8] = {p[1].x - p[0].x + g * p[1].x, p[3].x - p[0].x + h * p[3].x, p[0].x,
                         p[1].y - p[0].y + g * p[1].y, p[3].y - p[0].y + h * p[3].y, p[0].y, g, h};
-    /* The square's (s, t) are u / 25 and (v + 3.5) / 7. */
+    /* The square's (s, t) are u / length and (v + 3.5) / 7. */
     const float w = 1 + 0.5f * s[7];
     for (int k = 0; k < 8; k += 3) {
-        out->h[k] = s[k] / (PITCH * w);
+        out->h[k] = s[k] / (length * w);
         out->h[k + 1] = s[k + 1] / (7 * w);
     }
     out->h[2] = (s[2] + 0.5f * s[1]) / w;
@@ -46,7 +46,7 @@ void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_find
 {
     const tmi_point seen[4] = {tmi_at(left, 0, -3.5f), tmi_at(right, 0, -3.5f), tmi_at(right, 0, 3.5f),
                                tmi_at(left, 0, 3.5f)};
-    map_corners(seen, map);
+    map_corners(seen, PITCH, map);
     const float contrast_min = 0.05f * (left->light - left->dark + right->light - right->dark);
     for (int step = 0; step < 2; step++) {
         tmi_offsets at_left, at_right;
@@ -55,10 +55,74 @@ void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_find
             return;
         const tmi_point p[4] = {corrected(map, 0, -3.5f, &at_left), corrected(map, PITCH, -3.5f, &at_right),
                                 corrected(map, PITCH, 3.5f, &at_right), corrected(map, 0, 3.5f, &at_left)};
-        map_corners(p, map);
+        map_corners(p, PITCH, map);
         if (tmi_offsets_size(&at_left) < settled && tmi_offsets_size(&at_right) < settled)
             return;
     }
+}
+
+/* How the offsets change along a row: constant, linear and square term of u for the shift, constant and linear
+ * one for how the shift grows with v. */
+typedef struct row_trend {
+    float shift_u[3], shift_v[3], shear_u[3], shear_v[3];
+} row_trend;
+
+/* Fits the trend to what each finder shows. Perspective that was taken over wrongly from the two outermost finders
+ * is a square term along the row, a straight row stays straight, and so do its edges. False when too few do. */
+static bool fit_trend(const tmi_view *view, const tmi_homography *map, const tmi_finder *finders, int count,
+                      row_trend *trend, uint32_t *reads)
+{
+    tmi_normal shift_u = {0}, shift_v = {0}, shear_u = {0}, shear_v = {0};
+    const float no_square = 1e-3f; /* holds an unknown at zero that is not to be fitted */
+    tmi_normal_add(&shift_v, 0, 0, 1, 0, no_square);
+    tmi_normal_add(&shear_u, 0, 0, 1, 0, no_square);
+    tmi_normal_add(&shear_v, 0, 0, 1, 0, no_square);
+    int good = 0;
+    for (int i = 0; i < count; i++) {
+        tmi_offsets by;
+        const float contrast_min = 0.1f * (finders[i].light - finders[i].dark), u = 2 * (float)i / (float)(count - 1) - 1;
+        if (!tmi_finder_offsets(view, map, (float)(PITCH * i), 0.5f, contrast_min, &by, reads) ||
+            tmi_offsets_size(&by) > 1)
+            continue;
+        const float weight = finders[i].score * finders[i].score;
+        tmi_normal_add(&shift_u, 1, u, u * u, by.u[0], weight);
+        tmi_normal_add(&shift_v, 1, u, 0, by.v[0], weight);
+        tmi_normal_add(&shear_u, 1, u, 0, by.u[2], weight);
+        tmi_normal_add(&shear_v, 1, u, 0, by.v[2], weight);
+        good++;
+    }
+    return good > 3 && tmi_normal_solve(&shift_u, trend->shift_u) && tmi_normal_solve(&shift_v, trend->shift_v) &&
+           tmi_normal_solve(&shear_u, trend->shear_u) && tmi_normal_solve(&shear_v, trend->shear_v);
+}
+
+static float trend_at(const float p[3], float u)
+{
+    return p[0] + p[1] * u + p[2] * u * u;
+}
+
+bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tmi_homography *maps, uint32_t *reads)
+{
+    const tmi_finder *last = &finders[count - 1];
+    const tmi_point ends[4] = {tmi_at(finders, 0, -3.5f), tmi_at(last, 0, -3.5f), tmi_at(last, 0, 3.5f),
+                               tmi_at(finders, 0, 3.5f)};
+    tmi_homography row;
+    row_trend trend;
+    map_corners(ends, (float)(PITCH * (count - 1)), &row);
+    if (count < 4 || !fit_trend(view, &row, finders, count, &trend, reads))
+        return false;
+    tmi_point p[4];
+    for (int i = 0; i < count; i++) {
+        const float u = 2 * (float)i / (float)(count - 1) - 1;
+        const tmi_offsets by = {{trend_at(trend.shift_u, u), 0, trend_at(trend.shear_u, u)},
+                                {trend_at(trend.shift_v, u), 0, trend_at(trend.shear_v, u)}};
+        p[1] = corrected(&row, (float)(PITCH * i), -3.5f, &by);
+        p[2] = corrected(&row, (float)(PITCH * i), 3.5f, &by);
+        if (i > 0)
+            map_corners(p, PITCH, &maps[i - 1]);
+        p[0] = p[1];
+        p[3] = p[2];
+    }
+    return true;
 }
 
 /* ---- Sampling ---------------------------------------------------------------------------------------- */

@@ -10,6 +10,11 @@
 void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
                     uint32_t *reads);
 
+/* The maps of all CMs between `count` finders of a row, from all of them together: on one line, with one
+ * perspective. More exact than one by one where they are small. False, and no map touched, where there are fewer
+ * than four or they do not lie so. */
+bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tmi_homography *maps, uint32_t *reads);
+
 /* Samples the coding region, in the light and under the blur that its finder patterns show. False where those
  * differ too little between light and dark. */
 bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float contrast_min, tmi_cells *cells,

@@ -6,17 +6,19 @@
 
 enum { UPRIGHT = 0, TURNED = 1 };
 
+/* No reason to reject. */
+static const tapemark_reject BELIEVED = TAPEMARK_REJECT_COUNT;
+
 /* ---- Reading the CMs --------------------------------------------------------------------------------------- */
 
 /* Where what all words share fits one way up this much better, the other way is not tried with all words. */
 static const float turn_clear = 0.3f;
 
+/* Reads the CM in the place where its map has it. */
 static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int cm)
 {
     tapemark_stats *stats = &reader->result->stats;
     tmi_cells cells;
-    stats->cms_tried++;
-    tmi_marker_map(reader->view, &segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm], &stats->work);
     for (int way = UPRIGHT; way <= TURNED; way++)
         segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
     if (!tmi_marker_sample(reader->view, &segment->maps[cm], reader->config->contrast_min, &cells, &stats->work))
@@ -63,21 +65,29 @@ static const float odds_min_supported = 1.15f, odds_min_opposed = 2;
 /* Cells that show the opposite of the word: dirt, or a word that is none. */
 static const int contrary_max = 1;
 
+/* There are 3 082 words of up to two ones, 76 076 of three and 1 426 425 of four: the more of them there are, the
+ * likelier one fits by chance. */
+static float odds_factor(int32_t id)
+{
+    const int32_t rank = id < 0 ? -id : id;
+    return rank <= 3081 ? 1 : rank <= 79157 ? 1.15f : 1.35f;
+}
+
 /* The id `steps` CMs further on, but for its sign. */
 static int32_t rank(const tmi_reading *reading, int steps)
 {
     return (reading->id < 0 ? -reading->id : reading->id) + steps;
 }
 
-/* The reason not to believe a reading with these odds needed, or TAPEMARK_REJECT_COUNT when there is none. */
+/* The reason not to believe a reading with these odds needed, or BELIEVED. */
 static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *reading, float odds_needed)
 {
     if (reading->id == TMI_NO_ID || reading->score < score_min || reading->contrary > contrary_max ||
         tmi_reading_confidence(reading) < reader->config->confidence_min)
         return TAPEMARK_REJECT_SCORE;
-    if (reading->odds < odds_needed)
+    if (reading->odds < odds_needed * odds_factor(reading->id))
         return TAPEMARK_REJECT_MARGIN;
-    return reading->unknown ? TAPEMARK_REJECT_UNKNOWN_ID : TAPEMARK_REJECT_COUNT;
+    return reading->unknown ? TAPEMARK_REJECT_UNKNOWN_ID : BELIEVED;
 }
 
 /* Judges the CM that stands at `cm` of the part first..last, read in the direction `step` (1 or -1) along the row. */
@@ -88,7 +98,7 @@ static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readin
     for (int side = -1; side <= 1; side += 2) {
         const int other = cm + side;
         if (other < first || other > last || own->id == TMI_NO_ID ||
-            doubt(reader, &readings[other], odds_min) != TAPEMARK_REJECT_COUNT)
+            doubt(reader, &readings[other], odds_min) != BELIEVED)
             continue;
         if (rank(own, side * step) == rank(&readings[other], 0))
             supported = true;
@@ -97,7 +107,7 @@ static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readin
     }
     const float needed = supported ? odds_min_supported : opposed ? odds_min_opposed : odds_min;
     const tapemark_reject reason = doubt(reader, own, needed);
-    return reason == TAPEMARK_REJECT_MARGIN && own->odds >= odds_min ? TAPEMARK_REJECT_CONFLICT : reason;
+    return reason == TAPEMARK_REJECT_MARGIN && opposed && !supported ? TAPEMARK_REJECT_CONFLICT : reason;
 }
 
 /* ---- Reporting --------------------------------------------------------------------------------------------- */
@@ -158,11 +168,11 @@ static float turn_hint(const tmi_reader *reader, const tmi_segment *segment, int
 }
 
 /* Whether the blocks of the TM are as light or dark as the CMs that were read. */
-static bool agrees(const tmi_segment *segment, const bool *believed, int first, int count, bool turned, uint32_t code)
+static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count, bool turned, uint32_t code)
 {
     uint32_t known = 0, light = 0; /* the first CM's bit highest, as in the code */
     for (int cm = first; cm < first + count; cm++) {
-        known = known << 1 | (believed[cm] ? 1u : 0u);
+        known = known << 1 | (reasons[cm] == BELIEVED ? 1u : 0u);
         light = light << 1 | (segment->readings[turned][cm].id >= 0 ? 1u : 0u);
     }
     return ((code ^ light) & known) == 0;
@@ -173,25 +183,35 @@ static bool has_bars(const tmi_reader *reader, tmi_bars_place place)
     return tmi_bars_score(reader->view, place, &reader->result->stats.work) >= bars_min;
 }
 
+/* Whether bars stand at both ends of a part that lies in the image, corners set. */
+static bool ends_in_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count, bool turned,
+                         tapemark_point corners[4])
+{
+    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
+    const float ink = 3.5f + TAPEMARK_BAR_MODULES;
+    set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, corners);
+    return inside(reader->view, corners) && has_bars(reader, (tmi_bars_place){left, &segment->finders[first], 0, -1}) &&
+           has_bars(reader, (tmi_bars_place){right, &segment->finders[first + count], TAPEMARK_CM_PITCH_MODULES, 1});
+}
+
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
  * where it runs the other way, and 0 where that is not known. Returns the TM's index, or TMI_NONE. */
-static int report_tm(const tmi_reader *reader, const tmi_segment *segment, const bool *believed, int first, int count,
+static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapemark_reject *reasons, int first, int count,
                      float turn)
 {
     tapemark_result *result = reader->result;
-    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
     const bool turned = turn < 0;
-    const float ink = 3.5f + TAPEMARK_BAR_MODULES;
     tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0};
-    set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, out.corners);
-    if (!inside(reader->view, out.corners) || !has_bars(reader, (tmi_bars_place){left, 0, -1}) ||
-        !has_bars(reader, (tmi_bars_place){right, TAPEMARK_CM_PITCH_MODULES, 1})) {
+    /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
+    if (!ends_in_bars(reader, segment, first, count, turned, out.corners) &&
+        !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first], &result->stats.work) &&
+          ends_in_bars(reader, segment, first, count, turned, out.corners))) {
         result->stats.rejects[TAPEMARK_REJECT_BARS]++;
         return TMI_NONE;
     }
     tmi_tm_reading reading;
     tmi_tm_read(reader, segment, first, count, &reading);
-    if (reading.vote < reader->config->vote_min || !agrees(segment, believed, first, count, turned, reading.code)) {
+    if (reading.vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading.code)) {
         result->stats.rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE
                                                                       : TAPEMARK_REJECT_CONFLICT]++;
         return TMI_NONE;
@@ -210,30 +230,56 @@ static int report_tm(const tmi_reader *reader, const tmi_segment *segment, const
 
 /* ---- The segment ------------------------------------------------------------------------------------------- */
 
+/* Judges all CMs of a part; returns how many are believed. */
+static int judge_part(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float evidence,
+                      tapemark_reject reasons[TAPEMARK_TM_MAX_CMS])
+{
+    const bool turned = evidence < 0;
+    int believed = 0;
+    for (int cm = first; cm < first + count; cm++) {
+        reasons[cm] = real_abs(evidence) >= turn_min
+                          ? judge(reader, segment->readings[turned], cm, first, first + count - 1, turned ? -1 : 1)
+                          : TAPEMARK_REJECT_ALIGNMENT;
+        believed += reasons[cm] == BELIEVED;
+    }
+    return believed;
+}
+
+/* Locates the CMs anew, all finders of the part together, and reads again those that were not believed. */
+static void read_again(const tmi_reader *reader, tmi_segment *segment, int first, int count,
+                       const tapemark_reject reasons[TAPEMARK_TM_MAX_CMS])
+{
+    if (!tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
+                      &reader->result->stats.work))
+        return;
+    for (int cm = first; cm < first + count; cm++)
+        if (reasons[cm] != BELIEVED)
+            read_both_ways(reader, segment, cm);
+}
+
 /* Reads the CMs first..first + count - 1, between which there are no bars. */
-static void read_part(const tmi_reader *reader, const tmi_segment *segment, int first, int count)
+static void read_part(const tmi_reader *reader, tmi_segment *segment, int first, int count)
 {
     if (count == 0)
         return;
-    const float evidence = turn_evidence(segment, first, count);
-    const bool turned = evidence < 0, turn_is_clear = real_abs(evidence) >= turn_min;
-    bool believed[TAPEMARK_TM_MAX_CMS] = {false};
-    for (int cm = first; cm < first + count; cm++) {
-        const tapemark_reject reason =
-            turn_is_clear ? judge(reader, segment->readings[turned], cm, first, first + count - 1, turned ? -1 : 1)
-                          : TAPEMARK_REJECT_ALIGNMENT;
-        believed[cm] = reason == TAPEMARK_REJECT_COUNT;
-        if (!believed[cm])
-            reader->result->stats.rejects[reason]++;
+    tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
+    float evidence = turn_evidence(segment, first, count);
+    if (judge_part(reader, segment, first, count, evidence, reasons) < count) {
+        read_again(reader, segment, first, count, reasons);
+        evidence = turn_evidence(segment, first, count);
+        judge_part(reader, segment, first, count, evidence, reasons);
     }
+    const bool turned = evidence < 0, turn_is_clear = real_abs(evidence) >= turn_min;
     int tm = TMI_NONE;
     if (count >= TAPEMARK_TM_MIN_CMS)
-        tm = report_tm(reader, segment, believed, first, count,
+        tm = report_tm(reader, segment, reasons, first, count,
                        turn_is_clear ? evidence : turn_hint(reader, segment, first, count));
     for (int slot = 0; slot < count; slot++) {
         const int cm = turned ? first + count - 1 - slot : first + slot;
-        if (believed[cm])
+        if (reasons[cm] == BELIEVED)
             report_cm(reader, segment, cm, turned, tm, slot);
+        else
+            reader->result->stats.rejects[reasons[cm]]++;
     }
 }
 
@@ -244,9 +290,10 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
     if (real_max(segment->readings[UPRIGHT][cm].score, segment->readings[TURNED][cm].score) >= 0.7f)
         return false;
     /* What is between is not 25 modules long, so that the map between says nothing: each finder for itself. */
-    const tmi_homography left = tmi_finder_map(&segment->finders[cm]);
-    const tmi_homography right = tmi_finder_map(&segment->finders[cm + 1]);
-    return has_bars(reader, (tmi_bars_place){&left, 0, 1}) || has_bars(reader, (tmi_bars_place){&right, 0, -1});
+    const tmi_finder *left = &segment->finders[cm], *right = left + 1;
+    const tmi_homography left_map = tmi_finder_map(left), right_map = tmi_finder_map(right);
+    return has_bars(reader, (tmi_bars_place){&left_map, left, 0, 1}) ||
+           has_bars(reader, (tmi_bars_place){&right_map, right, 0, -1});
 }
 
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
@@ -256,8 +303,12 @@ void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder
         reader->result->stats.limits |= TAPEMARK_LIMIT_WORK;
         return;
     }
-    for (int cm = 0; cm < cm_count; cm++)
+    for (int cm = 0; cm < cm_count; cm++) {
+        reader->result->stats.cms_tried++;
+        tmi_marker_map(reader->view, &segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm],
+                       &reader->result->stats.work);
         read_both_ways(reader, segment, cm);
+    }
     int first = 0;
     for (int cm = 0; cm < cm_count; cm++)
         if (is_joint(reader, segment, cm)) {
