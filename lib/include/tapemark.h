@@ -248,10 +248,12 @@ typedef struct tapemark_result {
  * 1920 x 1080 px. Any alignment will do. */
 #define TAPEMARK_TILE_PX 16
 #define TAPEMARK_WORKSPACE_FIXED_BYTES 18432
+#define TAPEMARK_TILES(pixels) (((size_t)(pixels) + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX)
 #define TAPEMARK_WORKSPACE_BYTES(width_px, height_px)                                                  \
     ((size_t)TAPEMARK_WORKSPACE_FIXED_BYTES +                                                          \
-     (((size_t)(width_px) + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX + 2) *                            \
-         (((size_t)(height_px) + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX + 2) * 2)
+     3 * (TAPEMARK_TILES(width_px) + 2) * (TAPEMARK_TILES(height_px) + 2) +                            \
+     4 * TAPEMARK_TILES(height_px) * ((TAPEMARK_TILES(width_px) + 31) / 32) +                          \
+     4 * TAPEMARK_TILES(width_px) * ((TAPEMARK_TILES(height_px) + 31) / 32))
 
 /* The same, checked: 0 for a width or height outside 1 to 65535. */
 size_t tapemark_workspace_bytes(int32_t width_px, int32_t height_px);
