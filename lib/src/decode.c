@@ -154,7 +154,7 @@ static tapemark_config with_defaults(const tapemark_config *config, const tapema
     if (out.vote_min == 0)
         out.vote_min = 0.7f;
     if (out.contrast_min == 0)
-        out.contrast_min = 10;
+        out.contrast_min = 6;
     if (out.id_max == 0)
         out.id_max = TAPEMARK_MAX_ID;
     if (out.work_budget == 0)

@@ -83,8 +83,12 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
     }
 }
 
-/* The contrast that leaves at most `active_max` tiles, and at least contrast_min. */
-static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max)
+/* A tile has to have this part, in percent, of the contrast of the one with most: sensor noise grows with the light
+ * as contrast does, and it is everywhere. */
+enum { BAR_PERCENT = 8 };
+
+/* The contrast from which tiles are scanned: contrast_min at least, and what leaves at most `active_max` of them. */
+static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max, bool *raised)
 {
     uint32_t histogram[256] = {0};
     for (int32_t y = 0; y < tiles->rows; y++)
@@ -92,15 +96,20 @@ static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32
             const ptrdiff_t i = y * tiles->pitch + x;
             histogram[tiles->high[i] - tiles->low[i]]++;
         }
+    int most = 255;
+    while (most > 0 && !histogram[most])
+        most--;
+    const int least = most * BAR_PERCENT / 100 > contrast_min ? most * BAR_PERCENT / 100 : contrast_min;
     uint32_t above = 0;
-    uint8_t bar = 255;
-    for (int contrast = 255; contrast >= contrast_min; contrast--) {
+    int bar = 255;
+    for (int contrast = 255; contrast >= least; contrast--) {
         above += histogram[contrast];
         if (above > active_max)
             break;
-        bar = (uint8_t)contrast;
+        bar = contrast;
     }
-    return bar;
+    *raised = bar > least;
+    return (uint8_t)bar;
 }
 
 /* An edge has to change by a part of what light and dark differ by around it: enough to pass over noise and
@@ -116,7 +125,7 @@ static uint8_t edge_swing(const uint8_t *low, const uint8_t *high, ptrdiff_t pit
             lightest = high[i] > lightest ? high[i] : lightest;
         }
     const int swing = (lightest - darkest) / 6;
-    return (uint8_t)(swing > 4 ? swing : 4);
+    return (uint8_t)(swing > 2 ? swing : 2);
 }
 
 static void lay_out(tmi_tiles *tiles, const tmi_view *view, void *memory)
@@ -147,7 +156,8 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
     for (int32_t y = 0; y < tiles->rows; y++)
         tile_row_extremes(view, y, tiles->low + y * tiles->pitch, tiles->high + y * tiles->pitch);
 
-    const uint8_t bar = contrast_bar(tiles, contrast_min, active_max);
+    bool raised;
+    const uint8_t bar = contrast_bar(tiles, contrast_min, active_max, &raised);
     tiles->active = 0;
     for (int32_t y = 0; y < tiles->rows; y++)
         for (int32_t x = 0; x < tiles->columns; x++) {
@@ -159,5 +169,5 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
             tiles->row_bits[y * tiles->row_words + x / 32] |= 1u << (x % 32);
             tiles->column_bits[x * tiles->column_words + y / 32] |= 1u << (y % 32);
         }
-    return bar > contrast_min;
+    return raised;
 }
