@@ -5,7 +5,7 @@
 
 /* ---- Rays from the core outwards -------------------------------------------------------------------- */
 
-enum { RAYS = 16, RAY_SAMPLES = 72 };
+enum { RAYS = 16, RAY_SAMPLES = 72, MISSING_MAX = 5 };
 
 static const tmi_point ray_direction[RAYS] = {
     {1, 0}, {.923880f, .382683f}, {.707107f, .707107f}, {.382683f, .923880f},
@@ -109,13 +109,22 @@ typedef struct outline {
     float x[RAYS], y[RAYS]; /* of the dark ring's outer edge, from the start point */
 } outline;
 
-/* Missing rays take the mean of the next ones on both sides; more than five missing is no finder. */
-static bool close_gaps(const float *reach, outline *out)
+/* Puts the rays together to an outline. Opposite rays reach about as far as each other: where one is missing, or
+ * reaches much further because it passed over a ring, the other stands for both. Where both are missing they take
+ * the mean of the next ones. More than five missing is no finder. */
+static bool close_outline(float reach[RAYS], outline *out)
 {
     int missing = 0;
+    for (int i = 0; i < RAYS; i++) {
+        const float opposite = reach[(i + RAYS / 2) % RAYS];
+        if (opposite > 0 && (reach[i] == 0 || reach[i] > 1.5f * opposite)) {
+            reach[i] = opposite;
+            missing++;
+        }
+    }
     for (int i = 0; i < RAYS; i++)
         missing += reach[i] == 0;
-    if (missing > 5)
+    if (missing > MISSING_MAX)
         return false;
     for (int i = 0; i < RAYS; i++) {
         float r = reach[i];
@@ -380,13 +389,13 @@ bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, f
         return false;
     float reach[RAYS];
     int missing = 0;
-    for (int i = 0; i < RAYS && missing <= 5; i++) {
+    for (int i = 0; i < RAYS && missing <= MISSING_MAX; i++) {
         reach[i] = cast_ray(view, start, ray_direction[i], step_px, swing, reads);
         missing += reach[i] == 0;
     }
     outline out;
     moments m;
-    if (missing > 5 || !close_gaps(reach, &out) || !outline_moments(&out, &m))
+    if (missing > MISSING_MAX || !close_outline(reach, &out) || !outline_moments(&out, &m))
         return false;
     square_from_moments(&m, &out, start, finder);
     tmi_finder_score(view, finder, reads);

@@ -121,24 +121,54 @@ static void link_located(tmi_tape *tape)
 
 /* ---- Finders that the scan lines missed -------------------------------------------------------------------- */
 
-/* Where the next finder in that direction should be. The change of scale is known once there is a neighbour on
- * the other side: along a line in perspective, position is s u / (1 + k u). */
+static float distance(tmi_point a, tmi_point b)
+{
+    return real_sqrt((a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y));
+}
+
+static float length(tmi_point a)
+{
+    return real_sqrt(a.x * a.x + a.y * a.y);
+}
+
+/* How perspective goes on beyond node i, whose neighbour on the other side is `behind`. A point u pitches on lies at
+ * s u / (1 + q u), with the scale s at node i; q is returned. Known best from the distances of three finders in a
+ * row; else from the scales that two of them show, which are as inexact as they are small. */
+static float perspective_beyond(const tmi_tape *tape, int i, int behind, float along_here)
+{
+    const tmi_node *here = &tape->nodes[i], *before = &tape->nodes[behind];
+    const float step = distance(here->finder.centre, before->finder.centre);
+    int back = 0;
+    while (back < TMI_DIRECTIONS - 1 && before->neighbour[back] != i)
+        back++;
+    const int further = before->neighbour[(back + 2) & 3];
+    float q;
+    if (further != TMI_NONE) {
+        const float ratio = 1 + distance(before->finder.centre, tape->nodes[further].finder.centre) / step;
+        q = (ratio - 2) / (2 * ratio - 2);
+    } else {
+        const float along_before = length(axis(&before->finder, back));
+        q = 0.5f * (1 - pitch * along_here / step + 1 - step / (pitch * along_before));
+    }
+    return real_max(-0.3f, real_min(0.3f, q));
+}
+
+/* Where the next finder in that direction should be. */
 static tmi_finder foretell(const tmi_tape *tape, int i, int direction)
 {
     const tmi_node *node = &tape->nodes[i];
     tmi_finder next = turned(&node->finder, direction);
-    float k = 0;
     const int behind = node->neighbour[(direction + 2) & 3];
-    if (behind != TMI_NONE) {
-        const tmi_point there = to_modules(&next, tape->nodes[behind].finder.centre);
-        const float length = real_sqrt(there.x * there.x + there.y * there.y);
-        next.right = (tmi_point){(next.centre.x - tape->nodes[behind].finder.centre.x) / length,
-                                 (next.centre.y - tape->nodes[behind].finder.centre.y) / length};
-        k = real_max(-0.015f, real_min(0.015f, (1 - pitch / length) / pitch));
+    if (behind == TMI_NONE) {
+        next.centre = tmi_at(&next, pitch, 0);
+        return next;
     }
-    const float shrink = 1 / (1 + k * pitch);
-    next.centre = tmi_at(&next, pitch * shrink, 0);
-    next.right = (tmi_point){next.right.x * shrink * shrink, next.right.y * shrink * shrink};
+    const tmi_point from = tape->nodes[behind].finder.centre, here = next.centre;
+    const float q = perspective_beyond(tape, i, behind, length(next.right)), shrink = 1 / (1 + q);
+    /* One step on is the last step, (1 - q) / (1 + q) times as long. */
+    const float go = (1 - q) * shrink, module = go * shrink / pitch;
+    next.centre = (tmi_point){here.x + go * (here.x - from.x), here.y + go * (here.y - from.y)};
+    next.right = (tmi_point){module * (here.x - from.x), module * (here.y - from.y)};
     next.down = (tmi_point){next.down.x * shrink, next.down.y * shrink};
     return next;
 }
@@ -147,7 +177,8 @@ static tmi_finder foretell(const tmi_tape *tape, int i, int direction)
 static bool search(tmi_tape *tape, tmi_finder *finder)
 {
     const tmi_finder guess = *finder;
-    const float score_min = foretold_part * guess.score;
+    const float area = guess.right.x * guess.down.y - guess.right.y * guess.down.x;
+    const float score_min = (area < 2 ? 0.6f : foretold_part) * guess.score;
     finder->score = -1;
     for (int v = -1; v <= 1; v++)
         for (int u = -4; u <= 4; u++) {
