@@ -1,0 +1,142 @@
+/* Tapes seen from all sides, whole and rendered, with a good camera in good light. */
+#include "decoding.h"
+
+static const int32_t five_ids[] = {28, -29, 30, 31, -32};
+
+static void reads_a_single_cm_at_many_sizes(void **state)
+{
+    (void)state;
+    static const double sizes_px[] = {1.5, 2, 2.5, 3, 4, 6, 9, 13, 19};
+    static const int32_t ids[] = {0, -1, 57, -3081, 79157, -TAPEMARK_MAX_ID};
+    for (size_t s = 0; s < COUNT_OF(sizes_px); s++)
+        for (size_t i = 0; i < COUNT_OF(ids); i++) {
+            one_tape all = place_tape(scene_default(640, 240), &ids[i], 1, false,
+                                      (scene_pose){.px_per_module = sizes_px[s], .dx_px = 0.3, .dy_px = 0.7});
+            char name[64];
+            snprintf(name, sizeof name, "id %d at %g px a module", (int)ids[i], sizes_px[s]);
+            assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+        }
+}
+
+static void reads_a_cm_that_fills_the_frame(void **state)
+{
+    (void)state;
+    static const int32_t ids[] = {21, -16};
+    static const double sizes_px[] = {4, 8, 12, 16, 26, 40, 60};
+    for (size_t s = 0; s < COUNT_OF(sizes_px); s++)
+        for (size_t i = 0; i < COUNT_OF(ids); i++) {
+            const int32_t width_px = (int32_t)(34 * sizes_px[s]), height_px = (int32_t)(9 * sizes_px[s]);
+            one_tape all = place_tape(scene_default(width_px, height_px), &ids[i], 1, false,
+                                      (scene_pose){.px_per_module = sizes_px[s]});
+            char name[64];
+            snprintf(name, sizeof name, "a CM %d wide over the frame, id %d", (int)width_px, (int)ids[i]);
+            assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+        }
+}
+
+static void reads_tapes_of_all_lengths(void **state)
+{
+    (void)state;
+    for (size_t count = TAPEMARK_TM_MIN_CMS; count <= 16; count++) {
+        int32_t ids[16];
+        for (size_t i = 0; i < count; i++)
+            ids[i] = (int32_t)((i * i + count) % 3 == 0 ? -(100 + i) : 100 + i);
+        one_tape all = place_tape(scene_default(1120, 120), ids, count, true,
+                                  (scene_pose){.px_per_module = 2.5});
+        char name[64];
+        snprintf(name, sizeof name, "%u CMs", (unsigned)count);
+        assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+    }
+}
+
+static void reads_the_longest_tape(void **state)
+{
+    (void)state;
+    int32_t ids[TAPEMARK_TM_MAX_CMS];
+    const size_t count = ids_for_code("10110111010001110110100100111010", 500, ids);
+    one_tape all = place_tape(scene_default(1700, 60), ids, count, true, (scene_pose){.px_per_module = 2});
+    assert_all_read(decode_tape(&all, NULL, "32 CMs"), &all.view, 0.5);
+}
+
+static void reads_in_all_rolls(void **state)
+{
+    (void)state;
+    for (int roll_deg = 0; roll_deg < 360; roll_deg += 15) {
+        one_tape all = place_tape(scene_default(480, 480), five_ids, 5, true,
+                                  (scene_pose){.px_per_module = 3, .roll_deg = roll_deg});
+        char name[64];
+        snprintf(name, sizeof name, "roll %d", roll_deg);
+        const decoding *got = decode_tape(&all, NULL, name);
+        assert_all_read(got, &all.view, 0.5);
+        assert_int_equal(got->result.tm_count, 1);
+        assert_string_equal(got->tms[0].code, "10110");
+        assert_true(got->tms[0].directed);
+        for (size_t i = 0; i < 5; i++) /* reported in the order in which the tape reads */
+            assert_int_equal(got->cms[i].id, five_ids[i]);
+    }
+}
+
+static void reads_in_perspective(void **state)
+{
+    (void)state;
+    static const scene_pose poses[] = {
+        {.px_per_module = 4, .yaw_deg = 40},
+        {.px_per_module = 4, .yaw_deg = -55},
+        {.px_per_module = 4, .pitch_deg = 50},
+        {.px_per_module = 4, .pitch_deg = -60},
+        {.px_per_module = 4, .yaw_deg = 45, .pitch_deg = 30, .roll_deg = 20},
+        {.px_per_module = 4, .yaw_deg = -50, .pitch_deg = -35, .roll_deg = 200},
+        {.px_per_module = 5, .yaw_deg = 60, .roll_deg = 90},
+    };
+    for (size_t i = 0; i < COUNT_OF(poses); i++) {
+        one_tape all = place_tape(scene_default(720, 720), five_ids, 5, true, poses[i]);
+        char name[64];
+        snprintf(name, sizeof name, "perspective %u", (unsigned)i);
+        assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+    }
+}
+
+/* A tape on the floor ahead: its seven rows cover ten pixels, while modules are three pixels wide along it. */
+static void reads_a_tape_on_the_floor(void **state)
+{
+    (void)state;
+    one_tape all = place_tape(scene_default(640, 360), five_ids, 5, true,
+                              (scene_pose){.px_per_module = 3, .pitch_deg = -67.6, .dy_px = 60});
+    const decoding *got = decode_tape(&all, NULL, "on the floor");
+    assert_true(got->truth.tapes[0].px_across < 10.0 / TAPEMARK_HEIGHT_MODULES);
+    assert_all_read(got, &all.view, 0.5);
+}
+
+/* Below two pixels a module not every CM can be read; most are, and the code as a whole. */
+static void reads_small_modules(void **state)
+{
+    (void)state;
+    size_t read = 0, in_view = 0;
+    for (int place = 0; place < 8; place++) {
+        one_tape all = place_tape(scene_default(320, 120), five_ids, 5, true,
+                                  (scene_pose){.px_per_module = 1.2, .dx_px = 0.13 * place, .dy_px = 0.3 * place});
+        all.view.seed = (uint64_t)place;
+        all.view.optics.defocus_px = 0.35;
+        const decoding *got = decode_tape(&all, NULL, "1.2 px a module");
+        assert_nothing_wrong(got, &all.view);
+        read += count_read(got);
+        in_view += got->truth.cm_count;
+    }
+    if (10 * read < 8 * in_view)
+        fail_msg("at 1.2 px a module %u of %u CMs were read", (unsigned)read, (unsigned)in_view);
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_a_single_cm_at_many_sizes),
+        cmocka_unit_test(reads_a_cm_that_fills_the_frame),
+        cmocka_unit_test(reads_tapes_of_all_lengths),
+        cmocka_unit_test(reads_the_longest_tape),
+        cmocka_unit_test(reads_in_all_rolls),
+        cmocka_unit_test(reads_in_perspective),
+        cmocka_unit_test(reads_a_tape_on_the_floor),
+        cmocka_unit_test(reads_small_modules),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
