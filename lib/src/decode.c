@@ -9,12 +9,12 @@
  * this far apart, so that where the work runs out it has been spread evenly over the image. */
 enum { LINE_SPACING = 4, PASS_SPACING = 16, PASSES = PASS_SPACING / LINE_SPACING };
 
+/* Pixels that are read in a tile by all passes over rows and columns. */
+enum { TILE_WORK = 2 * TAPEMARK_TILE_PX * TAPEMARK_TILE_PX / LINE_SPACING };
+
 /* Parts of the work budget up to which lines are scanned, finder patterns tried and missing ones looked for; what
  * is left is for reading. */
 enum { SCAN_PERCENT = 40, TRY_PERCENT = 70, GROW_PERCENT = 80 };
-
-/* Where more tiles than this part of the image have contrast, only those with the most are scanned. */
-enum { ACTIVE_PERCENT = 25 };
 
 /* A finder pattern found by itself has to correlate this well with the ideal one. */
 static const float lone_score = 0.6f;
@@ -180,14 +180,15 @@ static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config
     tmi_tiles tiles;
     stats->tiles = (uint32_t)((view->width + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX *
                               ((view->height + TAPEMARK_TILE_PX - 1) / TAPEMARK_TILE_PX));
-    if (tmi_tiles_build(&tiles, view, config->contrast_min, part_of(stats->tiles, ACTIVE_PERCENT), w + 1))
+    const uint32_t scan_work = part_of(config->work_budget, SCAN_PERCENT);
+    if (tmi_tiles_build(&tiles, view, config->contrast_min, scan_work / TILE_WORK, w + 1))
         stats->limits |= TAPEMARK_LIMIT_SCAN;
     stats->tiles_active = tiles.active;
     w->tape.view = view;
     w->tape.stats = stats;
     w->tape.count = 0;
     w->tape.work_max = part_of(config->work_budget, TRY_PERCENT);
-    scan_lines(&w->tape, &tiles, part_of(config->work_budget, SCAN_PERCENT));
+    scan_lines(&w->tape, &tiles, scan_work);
     w->tape.work_max = part_of(config->work_budget, GROW_PERCENT);
     tmi_tape_link(&w->tape);
 }

@@ -87,7 +87,8 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
  * as contrast does, and it is everywhere. */
 enum { BAR_PERCENT = 8 };
 
-/* The contrast from which tiles are scanned: contrast_min at least, and what leaves at most `active_max` of them. */
+/* The contrast from which tiles are scanned: contrast_min at least, and what leaves about
+ * `active_max` of them. */
 static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max, bool *raised)
 {
     uint32_t histogram[256] = {0};
@@ -101,15 +102,17 @@ static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32
         most--;
     const int least = most * BAR_PERCENT / 100 > contrast_min ? most * BAR_PERCENT / 100 : contrast_min;
     uint32_t above = 0;
-    int bar = 255;
-    for (int contrast = 255; contrast >= least; contrast--) {
-        above += histogram[contrast];
-        if (above > active_max)
+    int bar = 256;
+    while (bar > least) {
+        const uint32_t next = histogram[bar - 1];
+        /* Tiles of equal contrast go in together or not at all; without them there may be next to nothing. */
+        if (above + next > active_max && above > active_max / 2)
             break;
-        bar = contrast;
+        above += next;
+        bar--;
     }
     *raised = bar > least;
-    return (uint8_t)bar;
+    return (uint8_t)(bar < 255 ? bar : 255);
 }
 
 /* An edge has to change by a part of what light and dark differ by around it: enough to pass over noise and

@@ -20,8 +20,8 @@ typedef struct tmi_tiles {
     uint32_t active;     /* tiles with a swing */
 } tmi_tiles;
 
-/* Lays everything out in `memory`, aligned for uint32_t and of TMI_TILES_BYTES at least, and fills it. At most `active_max` tiles stay active: where more have
- * contrast_min, the bar is raised to what leaves few enough. Returns whether that was needed. */
+/* Lays everything out in `memory`, aligned for uint32_t and of TMI_TILES_BYTES at least, and fills it. About `active_max` tiles stay active: where more have
+ * enough contrast, the bar is raised. Returns whether that was needed. */
 bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
                      void *memory);
 
