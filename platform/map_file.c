@@ -89,7 +89,8 @@ static bool read_position(const cJSON *item, map_entry *entry, error_text *error
     if (get_number(item, "x", &entry->cm.x_m) && get_number(item, "y", &entry->cm.y_m) &&
         fabs(entry->cm.x_m) <= COORDINATE_MAX_M && fabs(entry->cm.y_m) <= COORDINATE_MAX_M)
         return true;
-    error_text_set(error, "entry %zu (id %d): \"x\" and \"y\" must be metres on the plan", entry->number, entry->cm.id);
+    error_text_set(error, "entry %zu (id %d): \"x\" and \"y\" must be metres on the plan", entry->number,
+                   entry->cm.id);
     return false;
 }
 
@@ -133,8 +134,8 @@ static bool read_tm(const cJSON *item, map_entry *entry, error_text *error)
         return true;
     size_t length = is_blank(code) ? 0 : strlen(code);
     if (!named || length == 0 || length > MAP_CODE_MAX || strspn(code, "01") != length) {
-        error_text_set(error, "entry %zu (id %d): \"idtm\" must be a code of 0 and 1 and \"n_tm\" its number, or both "
-                       "blank", entry->number, entry->cm.id);
+        error_text_set(error, "entry %zu (id %d): \"idtm\" must be a code of 0 and 1 and \"n_tm\" its number, or "
+                       "both blank", entry->number, entry->cm.id);
         return false;
     }
     memcpy(entry->code, code, length + 1);
@@ -183,8 +184,9 @@ static bool check_repetition(map_entries *entries, error_text *error)
     for (size_t i = 1; i < entries->count; i++) {
         const map_entry *a = &entries->items[i - 1], *b = &entries->items[i];
         if (a->cm.id == b->cm.id) {
-            error_text_set(error, "entries %zu and %zu both have the id %d", a->number < b->number ? a->number : b->number,
-                           a->number < b->number ? b->number : a->number, a->cm.id);
+            size_t first = a->number < b->number ? a->number : b->number;
+            error_text_set(error, "entries %zu and %zu both have the id %d", first, a->number + b->number - first,
+                           a->cm.id);
             return false;
         }
     }
@@ -202,8 +204,9 @@ static bool add_tm(tape_map *map, map_entry *entries, size_t count, error_text *
         ones += entries[0].code[i] == '1';
     for (size_t i = 0; i < count; i++) {
         if (strcmp(entries[i].code, entries[0].code) != 0) {
-            error_text_set(error, "tape marker %s has the code %s in entry %zu and %s in entry %zu", entries[0].tm_name,
-                           entries[0].code, entries[0].number, entries[i].code, entries[i].number);
+            error_text_set(error, "tape marker %s has the code %s in entry %zu and %s in entry %zu",
+                           entries[0].tm_name, entries[0].code, entries[0].number, entries[i].code,
+                           entries[i].number);
             return false;
         }
         light += entries[i].cm.id >= 0;

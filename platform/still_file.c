@@ -139,7 +139,8 @@ static frame_status next_jpeg(frame_source *source, frame *output, error_text *e
         return byte_reader_failed(file->reader, error) ? FRAME_FAILED : FRAME_END;
     if (!take_jpeg(file, error) || !decode_picture(file, output, error))
         return FRAME_FAILED;
-    if (output->sequence > 0 && (output->layout.width_px != first.width_px || output->layout.height_px != first.height_px))
+    bool same_size = file->picture.width_px == first.width_px && file->picture.height_px == first.height_px;
+    if (output->sequence > 0 && !same_size)
         return FRAME_END;
     file->source.frames_expected = estimate_frames(file->reader, file->frame_count);
     return FRAME_READY;

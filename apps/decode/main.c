@@ -62,7 +62,8 @@ static void tell_input_error(decode_run *run, const char *path, const error_text
 static bool write_line(decode_run *run)
 {
     text_buffer *line = &run->line;
-    bool written = !line->failed && fwrite(line->text, 1, line->length, stdout) == line->length && fflush(stdout) == 0;
+    bool written =
+        !line->failed && fwrite(line->text, 1, line->length, stdout) == line->length && fflush(stdout) == 0;
     int reason = line->failed ? ENOMEM : errno;
     text_buffer_clear(line);
     if (!written) {
@@ -120,6 +121,12 @@ static bool decode_view(decode_run *run, const gray_view *view, uint32_t *decode
 
 typedef enum step { STEP_DONE, STEP_NEXT_INPUT, STEP_STOP } step;
 
+/* From 1, in the order of decoding. */
+static size_t input_number(const decode_run *run, const input_file *input)
+{
+    return (size_t)(input - run->inputs.files) + 1;
+}
+
 /* Annotated pictures of inputs that share a name are told apart by the input's number. */
 static bool annotate(const decode_run *run, const input_file *input, const frame *current, const gray_view *view,
                      error_text *error)
@@ -128,7 +135,7 @@ static bool annotate(const decode_run *run, const input_file *input, const frame
     const char *slash = strrchr(input->name, '/');
     const char *component = slash != NULL ? slash + 1 : input->name;
     if (input->name_shared)
-        snprintf(name, sizeof name, "%zu-%s", (size_t)(input - run->inputs.files) + 1, component);
+        snprintf(name, sizeof name, "%zu-%s", input_number(run, input), component);
     else
         snprintf(name, sizeof name, "%s", component);
     return annotate_frame(run->options.annotate_path, name, current->sequence, view, &run->result, error);
@@ -168,7 +175,8 @@ static bool decode_input(decode_run *run, const input_file *input)
     }
     while (outcome == STEP_DONE && (status = frame_source_next(source, &current, &error)) == FRAME_READY) {
         outcome = process_frame(run, input, &current, &error);
-        progress_update(&run->progress, input->name, current.sequence + 1, source->frames_expected);
+        progress_update(&run->progress, input->name, current.sequence + 1, source->frames_expected,
+                        input_number(run, input), run->inputs.count);
     }
     if (status == FRAME_FAILED)
         tell_input_error(run, input->path, &error);

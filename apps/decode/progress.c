@@ -21,7 +21,8 @@ void progress_init(progress *line)
     line->next_us = monotonic_us() + FIRST_AFTER_US;
 }
 
-void progress_update(progress *line, const char *source, uint64_t frames, uint64_t expected)
+void progress_update(progress *line, const char *source, uint64_t frames, uint64_t expected, size_t input,
+                     size_t input_count)
 {
     if (!line->wanted)
         return;
@@ -30,7 +31,10 @@ void progress_update(progress *line, const char *source, uint64_t frames, uint64
         return;
     line->next_us = now_us + INTERVAL_US;
     line->shown = true;
-    fprintf(stderr, "\r\033[K%.60s: frame %llu", source, (unsigned long long)frames);
+    fprintf(stderr, "\r\033[K");
+    if (input_count > 1)
+        fprintf(stderr, "%zu of %zu, ", input, input_count);
+    fprintf(stderr, "%.50s: frame %llu", source, (unsigned long long)frames);
     if (expected >= frames)
         fprintf(stderr, " of about %llu", (unsigned long long)expected);
     fflush(stderr);

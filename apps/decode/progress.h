@@ -3,6 +3,7 @@
 #define DECODE_PROGRESS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct progress {
@@ -16,8 +17,10 @@ int64_t monotonic_us(void);
 
 void progress_init(progress *line);
 
-/* Shows how far a source has come; `expected` is 0 while that is not known. Does nothing most of the times. */
-void progress_update(progress *line, const char *source, uint64_t frames, uint64_t expected);
+/* Shows how far a run has come: frames of one input, `expected` in all or 0 while that is not known, and which
+ * input of how many this is. Does nothing most of the times. */
+void progress_update(progress *line, const char *source, uint64_t frames, uint64_t expected, size_t input,
+                     size_t input_count);
 
 /* Wipes the line, so that something else can be printed. */
 void progress_clear(progress *line);

@@ -92,7 +92,8 @@ static void add_json_tm(text_buffer *buffer, const frame_report *report, size_t 
     size_t count = report_list_cms(report->result, index, cms);
     plan_point point = {0, 0};
 
-    text_buffer_add(buffer, "{\"type\":\"tm\",\"code\":\"%s\",\"directed\":%s", tm->code, tm->directed ? "true" : "false");
+    text_buffer_add(buffer, "{\"type\":\"tm\",\"code\":\"%s\",\"directed\":%s", tm->code,
+                    tm->directed ? "true" : "false");
     add_json_corners(buffer, tm->corners);
     add_json_member(buffer, "confidence", (double)tm->confidence, SHARE_DECIMALS);
     text_buffer_add(buffer, ",\"cms\":[");

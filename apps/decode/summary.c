@@ -37,7 +37,8 @@ static bool add_time(summary *total, uint32_t decode_us, error_text *error)
         size_t capacity = 2 * total->time_capacity + 1024;
         uint32_t *times_us = realloc(total->times_us, capacity * sizeof *times_us);
         if (times_us == NULL) {
-            error_text_set(error, "not enough memory for the times of %llu frames", (unsigned long long)total->frames);
+            error_text_set(error, "not enough memory for the times of %llu frames",
+                           (unsigned long long)total->frames);
             return false;
         }
         total->times_us = times_us;

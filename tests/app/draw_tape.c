@@ -1,8 +1,8 @@
 /*
  * draw_tape [-i] KIND FRAMES ID...
  *
- * Writes so many equal frames of 640 x 120 px with one segment of tape to standard output. KIND is pgm, y4m or a
- * layout of headerless frames, as in Y10P:640x120:832. Three ids and more make a tape marker. -i: light on dark.
+ * Writes so many equal frames of 640 x 480 px with one segment of tape to standard output. KIND is pgm, y4m or a
+ * layout of headerless frames, as in Y10P:640x480:832. Three ids and more make a tape marker. -i: light on dark.
  */
 #include "frame.h"
 #include "tapemark.h"
@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH_PX = 640, HEIGHT_PX = 120, MODULE_PX = 6, PAPER = 200, INK = 30, MOST_IDS = 3 };
+enum { WIDTH_PX = 640, HEIGHT_PX = 480, MODULE_PX = 6, PAPER = 200, INK = 30, MOST_IDS = 3 };
 
 static uint8_t picture[HEIGHT_PX][WIDTH_PX];
 
@@ -82,7 +82,7 @@ static bool write_frame(const char *kind, int number)
     if (strcmp(kind, "pgm") == 0)
         printf("P5\n%d %d\n255\n", WIDTH_PX, HEIGHT_PX);
     else if (strcmp(kind, "y4m") == 0)
-        printf("%sFRAME\n", number == 0 ? "YUV4MPEG2 W640 H120 F25:1 Ip A1:1 Cmono\n" : "");
+        printf("%sFRAME\n", number == 0 ? "YUV4MPEG2 W640 H480 F25:1 Ip A1:1 Cmono\n" : "");
     else
         return write_raw(kind);
     return fwrite(picture, 1, sizeof picture, stdout) == sizeof picture;

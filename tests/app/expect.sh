@@ -51,3 +51,9 @@ expect_refusal() {
     expect_lines err 1
     expect err "$text"
 }
+
+# expect_list EXPECTED PATTERN REPLACEMENT: what sed makes of the lines of output, with blanks between them.
+expect_list() {
+    found=$(sed "s/$2/$3/" out | tr '\n' ' ')
+    [ "$found" = "$1 " ] || fail "'$found' instead of '$1'"
+}

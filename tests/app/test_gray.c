@@ -20,7 +20,7 @@ static void expect_gray(pixel_format format, int32_t width_px, int32_t height_px
     gray_converter_release(&converter);
 }
 
-/* ---- Formats whose luma is looked at in place ------------------------------------------------------------ */
+/* ---- Formats whose luma is looked at in place ---------------------------------------------------------------- */
 
 static void luma_planes_are_not_copied(void **state)
 {
@@ -39,7 +39,7 @@ static void luma_planes_are_not_copied(void **state)
     }
 }
 
-/* ---- Deeper and packed samples ----------------------------------------------------------------------------- */
+/* ---- Deeper and packed samples ------------------------------------------------------------------------------- */
 
 static void y10_keeps_the_upper_eight_of_ten_bits(void **state)
 {
@@ -81,7 +81,7 @@ static void yuyv_and_uyvy_of_odd_width(void **state)
     expect_gray(PIXEL_UYVY, 3, 2, 8, uyvy, expected);
 }
 
-/* ---- Bayer ------------------------------------------------------------------------------------------------- */
+/* ---- Bayer --------------------------------------------------------------------------------------------------- */
 
 enum { SIDE_PX = 6 };
 
@@ -191,7 +191,7 @@ static void converter_serves_frames_of_any_size_in_turn(void **state)
     gray_converter_release(&converter);
 }
 
-/* ---- Layouts ------------------------------------------------------------------------------------------------ */
+/* ---- Layouts ------------------------------------------------------------------------------------------------- */
 
 static void layouts_are_understood(void **state)
 {

@@ -4,7 +4,7 @@
 #include "map_file.h"
 #include "places.h"
 
-/* ---- Reading --------------------------------------------------------------------------------------------------- */
+/* ---- Reading ------------------------------------------------------------------------------------------------- */
 
 static bool read_map(const char *text, places *loaded, error_text *error)
 {
@@ -25,6 +25,8 @@ static void expect_error(const char *text, const char *reason)
     assert_null(loaded.map.tms);
 }
 
+#define ZEROS_7 "0000000"
+#define ZEROS_77 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7 ZEROS_7
 #define ALONE(id, x, y) "{\"idcm_decimal\":" #id ",\"x\":" #x ",\"y\":" #y ",\"idtm\":\" \",\"n_tm\":\" \"}"
 #define OF_TM(id, x, y, code, tm) \
     "{\"idcm_decimal\":" #id ",\"x\":" #x ",\"y\":" #y ",\"idtm\":\"" #code "\",\"n_tm\":\"" #tm "\"}"
@@ -65,11 +67,11 @@ static void words_and_checksums_are_compared(void **state)
     places loaded;
     error_text error;
     (void)state;
-    assert_true(read_map("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"idcm\":\"000000000000000000000000000000000000000000000"
-                         "000000000000000000000000000000000\",\"checksum\":\"01000110\"}]", &loaded, &error));
+    assert_true(read_map("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"idcm\":\"" ZEROS_77 "0\","
+                         "\"checksum\":\"01000110\"}]", &loaded, &error));
     places_release(&loaded);
-    expect_error("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"idcm\":\"0000000000000000000000000000000000000000000000000000000"
-                 "00000000000000000000001\"}]", "entry 1 (id 0): \"idcm\" or \"checksum\"");
+    expect_error("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"idcm\":\"" ZEROS_77 "1\"}]",
+                 "entry 1 (id 0): \"idcm\" or \"checksum\"");
     expect_error("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"checksum\":\"01000111\"}]", "belongs to another id");
     expect_error("[{\"idcm_decimal\":0,\"x\":0,\"y\":0,\"idcm\":\"000\"}]", "belongs to another id");
 }
@@ -141,7 +143,7 @@ static void numbers_of_tms_may_be_numbers(void **state)
     places_release(&loaded);
 }
 
-/* ---- Where a TM is --------------------------------------------------------------------------------------------- */
+/* ---- Where a TM is ------------------------------------------------------------------------------------------- */
 
 /* Looks up a TM in which CMs with these ids were read. */
 static bool find_tm(const char *code, bool directed, const int32_t *ids, size_t id_count, plan_point *point)

@@ -127,11 +127,12 @@ void expect_failure(const bytes &content, size_t frame_count, const char *reason
     assert_non_null(std::strstr(got.error.c_str(), reason));
 }
 
-/* ---- Conversions: OpenCV's luma against ours ------------------------------------------------------------- */
+/* ---- Conversions: OpenCV's luma against ours ----------------------------------------------------------------- */
 
 void compare_with_opencv(pixel_format format, const cv::Mat &data, int width, int height, int conversion)
 {
-    frame input = {{format, width, height, frame_layout_least_stride(format, width)}, data.data, 0, FRAME_TIME_UNKNOWN};
+    frame_layout layout = {format, width, height, frame_layout_least_stride(format, width)};
+    frame input = {layout, data.data, 0, FRAME_TIME_UNKNOWN};
     cv::Mat expected;
     cv::cvtColor(data, expected, conversion);
     assert_true(largest_difference(to_gray(input), expected) == 0);
@@ -223,7 +224,7 @@ void damaged_stills(void **)
     expect_failure({0xff, 0xd8, 0xff, 0xd9}, 0, "damaged, cut short");
 }
 
-/* ---- Videos --------------------------------------------------------------------------------------------------- */
+/* ---- Videos -------------------------------------------------------------------------------------------------- */
 
 constexpr int video_frames = 12;
 
@@ -233,11 +234,11 @@ cv::Mat video_frame(int number)
 }
 
 /* In a file whose name FFmpeg could take for a protocol. */
-std::string write_video(const char *ending, const char *codec)
+std::string write_video()
 {
-    std::string path = temporary_file((std::string(":video") + ending).c_str(), "", 0);
-    cv::VideoWriter writer(path, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc(codec[0], codec[1], codec[2], codec[3]),
-                           25, cv::Size(64, 48));
+    std::string path = temporary_file(":video.avi", "", 0);
+    cv::VideoWriter writer(path, cv::CAP_OPENCV_MJPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25,
+                           cv::Size(64, 48));
     assert_true(writer.isOpened());
     for (int i = 0; i < video_frames; i++)
         writer.write(video_frame(i));
@@ -256,7 +257,7 @@ void expect_video_frames(const reading &got)
 
 void video_is_read_to_its_end(void **)
 {
-    std::string path = write_video(".avi", "MJPG");
+    std::string path = write_video();
     reading got = read_path(path);
     unlink(path.c_str());
     assert_string_equal(got.error.c_str(), "");
@@ -266,7 +267,7 @@ void video_is_read_to_its_end(void **)
 
 void cut_video_gives_its_first_frames_and_an_error(void **)
 {
-    std::string path = write_video(".avi", "MJPG");
+    std::string path = write_video();
     bytes whole = content_of(path);
     unlink(path.c_str());
     reading got = read_bytes(bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(whole.size() * 2 / 3)));
@@ -278,13 +279,14 @@ void cut_video_gives_its_first_frames_and_an_error(void **)
 /* An index at the end is how most programs write MP4. */
 void mp4_without_its_index_is_cut_short(void **)
 {
-    bytes mp4 = {0, 0, 0, 16, 'f', 't', 'y', 'p', 'i', 's', 'o', 'm', 0, 0, 0, 0, 0, 0, 1, 0, 'm', 'd', 'a', 't', 1, 2};
+    bytes mp4 = {0, 0, 0, 16, 'f', 't', 'y', 'p', 'i', 's', 'o', 'm', 0, 0, 0, 0,
+                 0, 0, 1, 0,  'm', 'd', 'a', 't', 1, 2};
     expect_failure(mp4, 0, "is cut short: 246 bytes are missing");
     mp4[17] = 0, mp4[18] = 0, mp4[19] = 10;  /* complete, but without any video */
     expect_failure(mp4, 0, "is a video that cannot be read");
 }
 
-/* ---- Standard error --------------------------------------------------------------------------------------------- */
+/* ---- Standard error ------------------------------------------------------------------------------------------ */
 
 void libraries_keep_quiet(void **)
 {

@@ -30,10 +30,9 @@ expect out '"x":1.7566,"y":0.1100}'
 expect out '"x":2.3411,"y":0.1100}'  # the middle of the tape marker
 
 run 0 "$paper/markers"
-[ "$(grep -c '"markers":\[{' out)" -eq "$(ls "$paper"/markers/*.jpg "$paper"/markers/*.png | wc -l)" ] || fail 'a picture without a marker'
+expect_none out '"markers":[]'
 
 run 0 "$paper/condition_a/tape.mp4"
 expect_lines out 100
-[ "$(sed 's/.*"frame":\([0-9]*\),"width":1080,"height":1920,.*/\1/' out | tr '\n' ' ')" = "$(seq 0 99 | tr '\n' ' ')" ] ||
-    fail 'frames of the video'
+expect_list "$(seq -s ' ' 0 99)" '.*"frame":\([0-9]*\),"width":1080,"height":1920,.*' '\1'
 [ "$(grep -c '"markers":\[{' out)" -ge 80 ] || fail 'frames of the video without a marker'

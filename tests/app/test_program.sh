@@ -7,7 +7,7 @@ draw=$3
 version=$4
 . "$here/expect.sh"
 
-# ---- Usage ---------------------------------------------------------------------------------------------------------
+# ---- Usage ----------------------------------------------------------------------------------------------------
 
 run 0 --help
 expect out 'usage: tapemark-decode'
@@ -31,7 +31,7 @@ expect_refusal 2 '--max-id needs a whole number from 1 to 1505582' --max-id -3 a
 expect_refusal 2 '--budget needs a whole number' --budget 4294967296 a.pgm
 expect_refusal 2 '--map needs a value' --map
 
-# ---- Formats of output ---------------------------------------------------------------------------------------------
+# ---- Formats of output ----------------------------------------------------------------------------------------
 
 "$draw" pgm 1 -20 >cm.pgm
 "$draw" pgm 1 12 -13 -14 >tm.pgm
@@ -42,7 +42,7 @@ expect_lines out 1
 number='-\{0,1\}[0-9]*\.[0-9]*'
 corner="\[$number,$number\]"
 corners="\"corners\":\[$corner,$corner,$corner,$corner\]"
-grep -q "^{\"source\":\"cm.pgm\",\"frame\":0,\"width\":640,\"height\":120,\"decode_us\":[0-9]*,\"markers\":\
+grep -q "^{\"source\":\"cm.pgm\",\"frame\":0,\"width\":640,\"height\":480,\"decode_us\":[0-9]*,\"markers\":\
 \[{\"type\":\"cm\",\"id\":-20,$corners,\"confidence\":$number[,}]" out || fail 'shape of a CM'
 expect err '1 frame, 1 with a marker read: 1 CM (1 distinct id), 0 TMs; decoding took'
 
@@ -52,7 +52,7 @@ grep -q "{\"type\":\"tm\",\"code\":\"100\",\"directed\":true,$corners,\"confiden
 
 run 0 --format csv cm.pgm tm.pgm
 expect_lines out 6
-[ "$(head -n 1 out | cut -d , -f 1-9)" = source,frame,width,height,decode_us,type,id,code,directed ] || fail 'csv header'
+expect out 'source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,confidence,cms,x,y'
 [ "$(cut -d , -f 1,2,6-9 out | sed -n '2p;6p' | tr '\n' ' ')" = 'cm.pgm,0,cm,-20,, tm.pgm,0,tm,,100,1 ' ] ||
     fail 'csv rows'
 
@@ -62,17 +62,20 @@ expect out 'cm.pgm frame 0: CM -20 at (3'
 expect out 'tm.pgm frame 0: TM 100 at (3'
 
 # A frame without markers is a line of its own all the same.
-"$draw" GREY:640x120 1 1 | head -c 10000 >flat.raw
+"$draw" GREY:640x480 1 1 | head -c 10000 >flat.raw
 run 0 --raw GREY:100x1 flat.raw
 expect_lines out 100
 expect out '"frame":99,"width":100,"height":1,'
 expect out '"markers":[]}'
 expect err '100 frames, 0 with a marker read'
 
-# ---- Inputs --------------------------------------------------------------------------------------------------------
+# ---- Inputs ---------------------------------------------------------------------------------------------------
 
-for layout in GREY:640x120 Y10:640x120 Y12:640x120 Y16:640x120 Y10P:640x120 YUYV:640x120 UYVY:640x120 NV12:640x120 \
-    YU12:640x120 SRGGB8:640x120 SGRBG10:640x120 SBGGR10P:640x120 GREY:640x120:800 Y10P:640x120:1000 NV12:640x120:2000; do
+layouts=
+for format in GREY Y10 Y12 Y16 Y10P YUYV UYVY NV12 YU12 SRGGB8 SGRBG10 SBGGR10P; do
+    layouts="$layouts $format:640x480"
+done
+for layout in $layouts GREY:640x480:800 Y10P:640x480:1000 NV12:640x480:2000; do
     "$draw" "$layout" 2 -321 >capture
     run 0 --raw "$layout" capture
     expect_lines out 2
@@ -84,12 +87,11 @@ for input in 'pgm cm.pgm' 'y4m walk.y4m'; do
     "$program" - <"${input#* }" >out 2>err || fail "standard input: $input"
     sed 's/"decode_us":[0-9]*//' out | cmp -s - from_file || fail "standard input differs: $input"
 done
-"$draw" NV12:640x120 2 7 | "$program" --raw NV12:640x120 - >out 2>err || fail 'raw standard input'
+"$draw" NV12:640x480 2 7 | "$program" --raw NV12:640x480 - >out 2>err || fail 'raw standard input'
 [ "$(grep -c '"id":7,' out)" -eq 2 ] || fail 'raw standard input'
 
 run 0 walk.y4m
-[ "$(sed 's/.*"frame":\([0-9]*\),.*"time_s":\([0-9.]*\)}/\1 \2/' out | tr '\n' ' ')" = '0 0.000000 1 0.040000 2 0.080000 ' ] ||
-    fail 'frames and times'
+expect_list '0 0.000000 1 0.040000 2 0.080000' '.*"frame":\([0-9]*\),.*"time_s":\([0-9.]*\)}' '\1 \2'
 
 "$draw" -i pgm 1 9 >inverted.pgm
 run 0 inverted.pgm
@@ -101,8 +103,9 @@ expect out '"id":-20,'
 run 0 --max-id 19 cm.pgm
 expect_none out '"id":-20,'
 
-# ---- Directories and names -----------------------------------------------------------------------------------------
+# ---- Directories and names ------------------------------------------------------------------------------------
 
+source_and_frame='.*"source":"\([^"]*\)","frame":\([0-9]*\),.*'
 mkdir -p set/below set2
 for name in b.pgm a.PGM B.pgm .hidden.pgm below/z.pgm; do
     cp cm.pgm "set/$name"
@@ -111,13 +114,12 @@ cp walk.y4m set/c.y4m
 echo notes >set/notes.txt
 echo '{}' >set/truth.json
 run 0 set
-[ "$(sed 's/{"source":"\([^"]*\)".*/\1/' out | uniq | tr '\n' ' ')" = 'B.pgm a.PGM b.pgm c.y4m ' ] || fail 'order of a directory'
+expect_list 'B.pgm 0 a.PGM 0 b.pgm 0 c.y4m 0 c.y4m 1 c.y4m 2' "$source_and_frame" '\1 \2'
 expect err 'set: 2 files left out'
 
 cp cm.pgm set2/b.pgm
 run 0 set/ set2/b.pgm --annotate drawn
-[ "$(sed 's/{"source":"\([^"]*\)".*/\1/' out | uniq | tr '\n' ' ')" = 'B.pgm a.PGM set/b.pgm c.y4m set2/b.pgm ' ] ||
-    fail 'names that are shared'
+expect_list 'B.pgm 0 a.PGM 0 set/b.pgm 0 c.y4m 0 c.y4m 1 c.y4m 2 set2/b.pgm 0' "$source_and_frame" '\1 \2'
 [ "$(cd drawn && echo *)" = '3-b.pgm-000000.png 5-b.pgm-000000.png B.pgm-000000.png a.PGM-000000.png '\
 'c.y4m-000000.png c.y4m-000001.png c.y4m-000002.png' ] || fail "names of annotated frames: $(ls drawn)"
 for picture in drawn/*; do
@@ -125,13 +127,12 @@ for picture in drawn/*; do
 done
 
 mkdir captures
-"$draw" NV12:640x120 1 3 >captures/1.nv12
-"$draw" NV12:640x120 2 3 >captures/2.raw
+"$draw" NV12:640x480 1 3 >captures/1.nv12
+"$draw" NV12:640x480 2 3 >captures/2.raw
 cp cm.pgm captures/3.pgm
 echo >captures/4.txt
-run 0 --raw NV12:640x120 captures
-[ "$(sed 's/{"source":"\([^"]*\)".*"id":\(-*[0-9]*\).*/\1 \2/' out | tr '\n' ' ')" = '1.nv12 3 2.raw 3 2.raw 3 3.pgm -20 ' ] ||
-    fail 'directory of raw captures'
+run 0 --raw NV12:640x480 captures
+expect_list '1.nv12 3 2.raw 3 2.raw 3 3.pgm -20' '.*"source":"\([^"]*\)".*"id":\(-*[0-9]*\).*' '\1 \2'
 
 mkdir empty
 expect_refusal 1 'empty: this directory holds no pictures or videos' empty
@@ -144,7 +145,7 @@ expect out '{"source":"two\u000alines \"\ufffd\".pgm"'
 rm "$strange"
 expect_refusal 1 'two?lines' "$strange"
 
-# ---- Damage --------------------------------------------------------------------------------------------------------
+# ---- Damage ---------------------------------------------------------------------------------------------------
 
 expect_refusal 1 'tapemark-decode: nowhere/a.pgm: cannot be opened: No such file' nowhere/a.pgm
 : >empty.png
@@ -163,24 +164,23 @@ got=0
 expect_lines err 1
 expect err 'tapemark-decode: standard input: this kind of video can only be read from a file'
 
-head -c 200000 walk.y4m >cut.y4m
+head -c 800000 walk.y4m >cut.y4m
 run 1 cut.y4m cm.pgm
-[ "$(sed 's/{"source":"\([^"]*\)","frame":\([0-9]*\).*/\1 \2/' out | tr '\n' ' ')" = 'cut.y4m 0 cut.y4m 1 cm.pgm 0 ' ] ||
-    fail 'frames before and inputs after the damage'
+expect_list 'cut.y4m 0 cut.y4m 1 cm.pgm 0' "$source_and_frame" '\1 \2'
 [ "$(grep -c '^tapemark-decode: ' err)" -eq 1 ] || fail 'one line about the damage'
-expect err 'tapemark-decode: cut.y4m: is cut short: frame 2 needs 76800 bytes'
+expect err 'tapemark-decode: cut.y4m: is cut short: frame 2 needs 307200 bytes'
 
 head -c 1000 cm.pgm >set/aa.pgm
 run 1 set
 expect_lines out 6
 expect err 'tapemark-decode: set/aa.pgm: is cut short'
 
-"$draw" GREY:640x120 2 3 | head -c 100000 >short.raw
-run 1 --raw GREY:640x120 short.raw
+"$draw" GREY:640x480 2 3 | head -c 400000 >short.raw
+run 1 --raw GREY:640x480 short.raw
 expect_lines out 1
-expect err 'short.raw: is cut short, or not GREY:640x120:640: 23200 bytes are left after 1 whole frames of 76800'
+expect err 'short.raw: is cut short, or not GREY:640x480:640: 92800 bytes are left after 1 whole frames of 307200'
 
-# ---- Output that cannot be written ---------------------------------------------------------------------------------
+# ---- Output that cannot be written ----------------------------------------------------------------------------
 
 got=0
 "$program" cm.pgm >/dev/full 2>err || got=$?
@@ -196,7 +196,7 @@ expect_lines err 1
 # A reader that goes away: the endless input shows that the program stops by itself.
 {
     "$draw" y4m 1 5
-    while "$draw" y4m 1 5 | tail -c 76806; do :; done
+    while "$draw" y4m 1 5 | tail -c 307206; do :; done
 } 2>/dev/null | { got=0; "$program" - 2>err || got=$?; echo "$got" >status; } | head -n 1 >out
 [ "$(cat status)" -ne 0 ] || fail 'broken pipe'
 expect_lines out 1
@@ -217,7 +217,7 @@ done
 exec 3>&-
 wait "$decoder" || fail 'standard input that ends'
 
-# ---- Annotated frames and maps -------------------------------------------------------------------------------------
+# ---- Annotated frames and maps --------------------------------------------------------------------------------
 
 echo >file
 expect_refusal 1 'tapemark-decode: file: is not a directory' --annotate file cm.pgm
@@ -233,4 +233,23 @@ expect out '"x":1.2500,"y":-2.0000}'
 expect_none out '"id":12'
 expect_refusal 1 'tapemark-decode: map.jsn: cannot be opened' --map map.jsn cm.pgm
 head -c 30 map.json >cut.json
-expect_refusal 1 'tapemark-decode: cut.json: is not valid JSON: it ends too early at line 1, column 31' --map cut.json cm.pgm
+expect_refusal 1 'cut.json: is not valid JSON: it ends too early at line 1, column 31' --map cut.json cm.pgm
+
+# ---- On a terminal --------------------------------------------------------------------------------------------
+
+# script(1) gives the program a terminal to write to; the frames come slowly enough for two looks at the progress.
+{
+    "$draw" y4m 1 5
+    for pause in 1.2 0.5; do
+        sleep "$pause"
+        "$draw" y4m 1 5 | tail -c 307206
+    done
+} >pipe &
+script -qec "'$program' pipe >out" terminal >/dev/null </dev/null || fail 'a run on a terminal'
+wait
+expect_lines out 3
+expect terminal 'pipe: frame 2'
+expect terminal 'pipe: frame 3'
+expect terminal '3 frames, 3 with a marker read'
+run 0 walk.y4m
+expect_none err "$(printf '\r')"

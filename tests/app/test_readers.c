@@ -86,7 +86,7 @@ static void try_all_cuts(const uint8_t *bytes, const frame_layout *raw, const ex
     }
 }
 
-/* ---- PGM ---------------------------------------------------------------------------------------------------- */
+/* ---- PGM ----------------------------------------------------------------------------------------------------- */
 
 static const uint8_t six[] = {0, 1, 2, 253, 254, 255};
 
@@ -102,7 +102,7 @@ static void pgm_with_comments(void **state)
 {
     const expected_frame frames[] = {{3, 2, six}};
     (void)state;
-    expect_content(LITERAL("P5# made by hand\n# 9 9 9\n3# wide\n#\n 2 #high\n255#most\n\x00\x01\x02\xfd\xfe\xff"), NULL,
+    expect_content(LITERAL("P5# by hand\n# 9 9 9\n3# wide\n#\n 2 #high\n255#most\n\x00\x01\x02\xfd\xfe\xff"), NULL,
                    frames, 1, NULL);
 }
 
@@ -164,7 +164,7 @@ static void wrong_pgm_headers(void **state)
     expect_content(LITERAL("P5 65535 65535 255\nabc"), NULL, NULL, 0, "needs 4294836225 bytes, and 3 are left");
 }
 
-/* ---- Y4M ---------------------------------------------------------------------------------------------------- */
+/* ---- Y4M ----------------------------------------------------------------------------------------------------- */
 
 static void y4m_of_each_chroma_scheme(void **state)
 {
@@ -257,7 +257,7 @@ static void y4m_that_cannot_be_read(void **state)
     expect_content(LITERAL("YUV4MPEG2 W65535 H65535\nFRAME\nabcduv"), NULL, NULL, 0, "cut short: frame 0 needs");
 }
 
-/* ---- Headerless captures -------------------------------------------------------------------------------------- */
+/* ---- Headerless captures ------------------------------------------------------------------------------------- */
 
 static void raw_frames_with_a_stride(void **state)
 {
@@ -307,7 +307,7 @@ static void raw_of_a_wrong_size(void **state)
     expect_refusal(LITERAL(""), &layout, "is empty");
 }
 
-/* ---- Any file ------------------------------------------------------------------------------------------------- */
+/* ---- Any file ------------------------------------------------------------------------------------------------ */
 
 static void files_that_cannot_be_opened(void **state)
 {

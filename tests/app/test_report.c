@@ -11,8 +11,8 @@
 #define SQUARE(x, y) {{(x), (y)}, {(x) + 10, (y)}, {(x) + 10, (y) + 5}, {(x), (y) + 5}}
 
 static tapemark_cm cms[] = {
-    {.id = 1505582, .corners = SQUARE(0.25f, 1), .confidence = 0.5f, .doubtful_cells = 3, .corrected_cells = 1, .tm = -1,
-     .slot = -1},
+    {.id = 1505582, .corners = SQUARE(0.25f, 1), .confidence = 0.5f, .doubtful_cells = 3, .corrected_cells = 1,
+     .tm = -1, .slot = -1},
     /* Not in the order of their slots. */
     {.id = -20, .corners = SQUARE(30, 1), .confidence = 1, .tm = 0, .slot = 3},
     {.id = 17, .corners = SQUARE(10, 1), .confidence = 1, .tm = 0, .slot = 0},
@@ -68,7 +68,7 @@ static double corner_of(const cJSON *marker, int corner, int axis)
     return cJSON_GetArrayItem(cJSON_GetArrayItem(corners, corner), axis)->valuedouble;
 }
 
-/* ---- JSON Lines ------------------------------------------------------------------------------------------------- */
+/* ---- JSON Lines ---------------------------------------------------------------------------------------------- */
 
 static void frame_without_markers(void **state)
 {
@@ -77,8 +77,8 @@ static void frame_without_markers(void **state)
     frame_report report = {"a.png", 0, 3, 2, FRAME_TIME_UNKNOWN, 5, &result, NULL};
     (void)state;
     report_add_json(&line, &report);
-    assert_string_equal(line.text,
-                        "{\"source\":\"a.png\",\"frame\":0,\"width\":3,\"height\":2,\"decode_us\":5,\"markers\":[]}\n");
+    assert_string_equal(line.text, "{\"source\":\"a.png\",\"frame\":0,\"width\":3,\"height\":2,\"decode_us\":5,"
+                                   "\"markers\":[]}\n");
     text_buffer_release(&line);
 }
 
@@ -206,7 +206,7 @@ static void numbers_that_json_lacks_are_null(void **state)
     text_buffer_release(&text);
 }
 
-/* ---- CSV and text ----------------------------------------------------------------------------------------------- */
+/* ---- CSV and text -------------------------------------------------------------------------------------------- */
 
 static size_t count_fields(const char *row)
 {
@@ -289,7 +289,8 @@ static void places_are_added_where_known(void **state)
     assert_string_equal(keys_of(cJSON_GetArrayItem(markers, 0)), "type id corners confidence doubtful corrected");
     assert_true(number_of(cJSON_GetArrayItem(markers, 1), "x") == 4.5);
     assert_true(number_of(cJSON_GetArrayItem(markers, 1), "y") == 2);
-    assert_string_equal(keys_of(cJSON_GetArrayItem(markers, 3)), "type code directed corners confidence cms vote x y");
+    assert_string_equal(keys_of(cJSON_GetArrayItem(markers, 3)),
+                        "type code directed corners confidence cms vote x y");
     assert_true(number_of(cJSON_GetArrayItem(markers, 3), "x") == 3);
     cJSON_Delete(object);
 
@@ -304,7 +305,7 @@ static void places_are_added_where_known(void **state)
     unlink(temporary_file(".json", "", 0));
 }
 
-/* ---- Summary ------------------------------------------------------------------------------------------------------ */
+/* ---- Summary ------------------------------------------------------------------------------------------------- */
 
 static void summary_counts_frames_ids_and_times(void **state)
 {
@@ -323,8 +324,8 @@ static void summary_counts_frames_ids_and_times(void **state)
     FILE *stream = fmemopen(text, sizeof text, "w");
     summary_print(&total, stream);
     fclose(stream);
-    assert_string_equal(text, "3 frames, 2 with a marker read: 6 CMs (3 distinct ids), 4 TMs; decoding took 0.90 ms in "
-                              "the median, 5.00 ms at most\nlimits hit: scan in 1 frame, work in 3 frames\n");
+    assert_string_equal(text, "3 frames, 2 with a marker read: 6 CMs (3 distinct ids), 4 TMs; decoding took 0.90 ms "
+                              "in the median, 5.00 ms at most\nlimits hit: scan in 1 frame, work in 3 frames\n");
     summary_release(&total);
 }
 
