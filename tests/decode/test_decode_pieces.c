@@ -1,0 +1,165 @@
+/* Several tapes in a frame, and tapes of which something is missing. */
+#include "decoding.h"
+
+static const int32_t first_ids[] = {22, 23, -24, 25, -26, 27};
+static const int32_t second_ids[] = {-42, 43, 44, -45};
+
+static void reads_every_tape_in_the_frame(void **state)
+{
+    (void)state;
+    scene view = scene_default(800, 600);
+    static const int32_t lone_id[] = {-77};
+    scene_tape tapes[5] = {scene_tape_of(first_ids, 6, true), scene_tape_of(second_ids, 4, true),
+                           scene_tape_of(lone_id, 1, false), scene_tape_of(first_ids, 2, false),
+                           scene_tape_of(second_ids, 3, true)};
+    static const scene_pose poses[5] = {{.px_per_module = 3, .dy_px = -200, .roll_deg = 5},
+                                        {.px_per_module = 4, .dy_px = 60, .roll_deg = 180, .yaw_deg = 20},
+                                        {.px_per_module = 5, .dx_px = 200, .dy_px = 220},
+                                        {.px_per_module = 2.5, .dx_px = -200, .dy_px = 220, .roll_deg = -20},
+                                        {.px_per_module = 3, .dx_px = -330, .dy_px = 20, .roll_deg = 90}};
+    for (size_t i = 0; i < 5; i++)
+        scene_place(&view, &tapes[i], poses[i]);
+    view.tapes = tapes;
+    view.tape_count = 5;
+    const decoding *got = decode_scene(&view, NULL, "five tapes");
+    assert_all_read(got, &view, 0.5);
+    assert_int_equal(got->result.tm_count, 3);
+    assert_int_equal(got->result.cm_count, 16);
+}
+
+/* The second tape follows the first one on the same line, this many modules on. */
+static void place_behind(const scene_tape *first, scene_tape *second, double gap_modules)
+{
+    const double along_m = first->module_m *
+        ((double)tapemark_segment_width_modules(first->cm_count, first->bars) + gap_modules);
+    *second = (scene_tape){.ids = second->ids, .cm_count = second->cm_count, .bars = second->bars,
+                           .light = first->light, .dark = first->dark, .module_m = first->module_m,
+                           .along = first->along, .down = first->down,
+                           .origin_m = {first->origin_m.x + along_m * first->along.x,
+                                        first->origin_m.y + along_m * first->along.y,
+                                        first->origin_m.z + along_m * first->along.z}};
+}
+
+/* From a gap of five modules on, so that between the outermost finders there is about the length of a CM. */
+static void reads_pieces_side_by_side(void **state)
+{
+    (void)state;
+    for (int gap = 5; gap <= 13; gap++)
+        for (int roll_deg = 0; roll_deg < 360; roll_deg += 180) {
+            scene view = scene_default(840, 200);
+            scene_tape tapes[2] = {scene_tape_of(second_ids, 4, true), scene_tape_of(first_ids, 4, true)};
+            scene_place(&view, &tapes[0],
+                        (scene_pose){.px_per_module = 3, .dx_px = roll_deg ? 215 : -215, .roll_deg = roll_deg});
+            place_behind(&tapes[0], &tapes[1], gap);
+            view.tapes = tapes;
+            view.tape_count = 2;
+            const decoding *got = decode_scene(&view, NULL, "pieces %d modules apart, roll %d", gap, roll_deg);
+            assert_all_read(got, &view, 0.5);
+            assert_int_equal(got->result.tm_count, 2);
+        }
+}
+
+/* The border takes one module after the other: CMs that are left are read, and no TM that is not whole. */
+static void tapes_cut_by_the_border_are_no_wrong_tms(void **state)
+{
+    (void)state;
+    for (int shift = 0; shift <= 75; shift += 5) {
+        one_tape all = place_tape(scene_default(520, 200), first_ids, 6, true,
+                                  (scene_pose){.px_per_module = 3, .dx_px = 3.0 * shift, .roll_deg = 2});
+        const decoding *got = decode_tape(&all, NULL, "cut by the border");
+        assert_nothing_wrong(got, &all.view);
+        if (!got->truth.tapes[0].whole)
+            assert_int_equal(got->result.tm_count, 0);
+        assert_all_read(got, &all.view, 0.5);
+    }
+}
+
+static void a_covered_cm_is_a_gap_and_no_wrong_id(void **state)
+{
+    (void)state;
+    for (int place = 0; place < 12; place++) {
+        one_tape all = place_tape(scene_default(640, 200), first_ids, 6, true, (scene_pose){.px_per_module = 3.5});
+        const scene_cover cover = {.x_px = 60 + 45.0 * place, .y_px = 100, .width_px = 35, .height_px = 60,
+                                   .angle_deg = 15, .shade = place % 2 ? 40 : 150, .texture = 8};
+        all.view.covers = &cover;
+        all.view.cover_count = 1;
+        const decoding *got = decode_tape(&all, NULL, "covered");
+        assert_nothing_wrong(got, &all.view);
+        size_t whole = 0;
+        for (size_t i = 0; i < got->truth.cm_count; i++)
+            whole += got->truth.cms[i].whole;
+        if (count_read(got) + 1 < whole) /* one whose neighbour's finder is gone may go with it */
+            fail_msg("cover at %d: %u of %u CMs were read", place, (unsigned)count_read(got), (unsigned)whole);
+    }
+}
+
+/* The upper half of the tape: bars and finders can be guessed, ids cannot. */
+static void half_a_tape_is_no_wrong_id(void **state)
+{
+    (void)state;
+    for (int lower_px = -14; lower_px <= 14; lower_px += 4) {
+        one_tape all = place_tape(scene_default(640, 200), first_ids, 6, true, (scene_pose){.px_per_module = 3.5});
+        const scene_cover cover = {.x_px = 320, .y_px = 100 + 30 + lower_px, .width_px = 700, .height_px = 60,
+                                   .shade = 120};
+        all.view.covers = &cover;
+        all.view.cover_count = 1;
+        const decoding *got = decode_tape(&all, NULL, "half covered");
+        for (size_t i = 0; i < got->result.cm_count; i++)
+            assert_int_equal(got->cms[i].id, first_ids[got->cms[i].slot < 0 ? i : (size_t)got->cms[i].slot]);
+    }
+}
+
+static void ids_need_not_ascend(void **state)
+{
+    (void)state;
+    static const int32_t paper_tape[] = {17, -18, -19, -19, -20}, any[] = {900, -4, 120000, 5, -3};
+    static const int32_t *const tapes[] = {paper_tape, any};
+    for (size_t i = 0; i < COUNT_OF(tapes); i++) {
+        one_tape all = place_tape(scene_default(640, 120), tapes[i], 5, true, (scene_pose){.px_per_module = 4});
+        assert_all_read(decode_tape(&all, NULL, "ids in disorder"), &all.view, 0.5);
+    }
+}
+
+static void segments_without_bars_are_no_tms(void **state)
+{
+    (void)state;
+    one_tape all = place_tape(scene_default(640, 120), first_ids, 6, false, (scene_pose){.px_per_module = 3});
+    const decoding *got = decode_tape(&all, NULL, "no bars");
+    assert_all_read(got, &all.view, 0.5);
+    assert_int_equal(got->result.tm_count, 0);
+    for (size_t i = 0; i < got->result.cm_count; i++)
+        assert_int_equal(got->cms[i].tm, -1);
+}
+
+static void tapes_are_read_before_clutter(void **state)
+{
+    (void)state;
+    static const scene_background backgrounds[] = {
+        {.kind = SCENE_NOISE, .light = 200, .dark = 60, .scale_px = 20},
+        {.kind = SCENE_BLINDS, .light = 220, .dark = 70, .scale_px = 30, .angle_deg = 80},
+        {.kind = SCENE_TEXT, .light = 230, .dark = 40, .scale_px = 2},
+        {.kind = SCENE_GRID_CODES, .light = 230, .dark = 40, .scale_px = 4},
+    };
+    for (size_t i = 0; i < COUNT_OF(backgrounds); i++) {
+        one_tape all = place_tape(scene_default(640, 480), first_ids, 6, true, (scene_pose){.px_per_module = 3});
+        all.view.background = backgrounds[i];
+        char name[32];
+        snprintf(name, sizeof name, "background %u", (unsigned)i);
+        assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+    }
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(reads_every_tape_in_the_frame),
+        cmocka_unit_test(reads_pieces_side_by_side),
+        cmocka_unit_test(tapes_cut_by_the_border_are_no_wrong_tms),
+        cmocka_unit_test(a_covered_cm_is_a_gap_and_no_wrong_id),
+        cmocka_unit_test(half_a_tape_is_no_wrong_id),
+        cmocka_unit_test(ids_need_not_ascend),
+        cmocka_unit_test(segments_without_bars_are_no_tms),
+        cmocka_unit_test(tapes_are_read_before_clutter),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
