@@ -16,11 +16,13 @@ static const float line_v[LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f
 /* A line counts when its samples correlate with ideal bars at both ends by this much. */
 static const float line_bars_min = 0.3f;
 
-/* Bars closer than this, in px a module, need not be seen one by one. */
-static const float unresolved_px = 1.5f;
+/* Bars closer than this, in px a module, or beside a finder as blurred as this, need not be seen one by one. */
+static const float unresolved_px = 1.5f, unresolved_score = 0.9f;
 
 static bool is_unresolved(tmi_bars_place place)
 {
+    if (place.finder->score < unresolved_score)
+        return true;
     const tmi_point a = tmi_project(place.map, place.u, 0), b = tmi_project(place.map, place.u + place.direction, 0);
     return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y) < unresolved_px * unresolved_px;
 }

@@ -59,6 +59,8 @@ static const float score_min = 0.8f;
 /* The second best word must leave this many times as much unexplained as the best one. Over some 8000 CMs of
  * rendered and real frames, a third of them below 1.5 px a module, no wrong word of that score reached it. */
 static const float odds_min = 1.45f;
+/* What shares this little with all words is no CM. */
+static const float cm_score = 0.5f;
 /* What is enough where the next CM of the segment is sure and its id says the same, and what is needed where it says
  * otherwise: ids ascend along a segment. */
 static const float odds_min_supported = 1.15f, odds_min_opposed = 2;
@@ -167,15 +169,20 @@ static float turn_hint(const tmi_reader *reader, const tmi_segment *segment, int
     return real_abs(along) > 0.2f ? along : 0;
 }
 
-/* Whether the blocks of the TM are as light or dark as the CMs that were read. */
-static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count, bool turned, uint32_t code)
+/* Whether the blocks of the TM are as light or dark as the CMs that were read; and where some were, whether the others
+ * look like CMs at all, or like something that covers them. */
+static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count, bool turned,
+                   uint32_t code)
 {
     uint32_t known = 0, light = 0; /* the first CM's bit highest, as in the code */
+    bool covered = false;
     for (int cm = first; cm < first + count; cm++) {
+        const tmi_reading *reading = &segment->readings[turned][cm];
         known = known << 1 | (reasons[cm] == BELIEVED ? 1u : 0u);
-        light = light << 1 | (segment->readings[turned][cm].id >= 0 ? 1u : 0u);
+        light = light << 1 | (reading->id >= 0 ? 1u : 0u);
+        covered = covered || reading->score < cm_score;
     }
-    return ((code ^ light) & known) == 0;
+    return ((code ^ light) & known) == 0 && !(known && covered);
 }
 
 static bool has_bars(const tmi_reader *reader, tmi_bars_place place)

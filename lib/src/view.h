@@ -25,12 +25,14 @@ enum { TMI_SMALLEST_SIDE = 8 };
 /* Bilinear interpolation; outside of the image the border pixels go on. */
 static inline float tmi_sample(const tmi_view *view, float x, float y)
 {
-    const float right = (float)view->width - 1.001f, bottom = (float)view->height - 1.001f;
+    const float right = (float)(view->width - 1), bottom = (float)(view->height - 1);
     x = x > 0 ? x : 0; /* a NaN ends up as 0 */
     y = y > 0 ? y : 0;
     x = x < right ? x : right;
     y = y < bottom ? y : bottom;
-    const int32_t column = (int32_t)x, row = (int32_t)y;
+    int32_t column = (int32_t)x, row = (int32_t)y;
+    column = column < view->width - 2 ? column : view->width - 2; /* the last pixel is the right one of its pair */
+    row = row < view->height - 2 ? row : view->height - 2;
     const float fx = x - (float)column, fy = y - (float)row;
     const uint8_t *p = view->pixels + row * view->stride + column, *q = p + view->stride;
     const float top = (float)p[0] + fx * (float)(p[1] - p[0]);
