@@ -16,6 +16,9 @@ enum { TILE_WORK = 2 * TAPEMARK_TILE_PX * TAPEMARK_TILE_PX / LINE_SPACING };
  * is left is for reading. */
 enum { SCAN_PERCENT = 40, TRY_PERCENT = 70, GROW_PERCENT = 80 };
 
+/* Comparing a hit with the finders already there costs as much as this many pixel reads. */
+enum { HIT_WORK = 8 };
+
 /* A finder pattern found by itself has to correlate this well with the ideal one. */
 static const float lone_score = 0.6f;
 
@@ -43,7 +46,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 {
     if (!size_is_valid(width_px, height_px))
         return 0;
-    return 160000 + (uint32_t)width_px * (uint32_t)height_px / 12;
+    return 180000 + (uint32_t)width_px * (uint32_t)height_px / 12;
 }
 
 /* ---- From scan lines to finder patterns ---------------------------------------------------------------------- */
@@ -59,6 +62,7 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
     tmi_tape *tape = s->tape;
     tapemark_stats *stats = tape->stats;
     stats->pattern_hits++;
+    stats->work += HIT_WORK;
     const tmi_point at = s->vertical ? (tmi_point){(float)line, hit->centre} : (tmi_point){hit->centre, (float)line};
     if (tmi_tape_finder_at(tape, at) != TMI_NONE)
         return;

@@ -14,6 +14,20 @@ static const tapemark_reject BELIEVED = TAPEMARK_REJECT_COUNT;
 /* Where what all words share fits one way up this much better, the other way is not tried with all words. */
 static const float turn_clear = 0.3f;
 
+/* What shares less than this with all words is not worth comparing with each. A dark CM has three light alignment
+ * cells only, among up to twelve that are its word's. */
+static const float blank_min = 0.3f;
+
+/* Whether there is work left; notes the limit where there is none. */
+static bool may_go_on(const tmi_reader *reader)
+{
+    tapemark_stats *stats = &reader->result->stats;
+    if (stats->work < reader->config->work_budget)
+        return true;
+    stats->limits |= TAPEMARK_LIMIT_WORK;
+    return false;
+}
+
 /* Reads the CM in the place where its map has it. */
 static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int cm)
 {
@@ -29,8 +43,10 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
     const float better = real_max(blank[UPRIGHT], blank[TURNED]);
     for (int way = UPRIGHT; way <= TURNED; way++) {
         segment->readings[way][cm].score = blank[way];
-        if (blank[way] > better - turn_clear)
-            tmi_word_match(way == UPRIGHT ? &cells : &turned, &reader->words, &segment->readings[way][cm]);
+        if (blank[way] < blank_min || blank[way] < better - turn_clear)
+            continue;
+        tmi_word_match(way == UPRIGHT ? &cells : &turned, &reader->words, &segment->readings[way][cm],
+                       &stats->work);
     }
 }
 
@@ -259,9 +275,18 @@ static void read_again(const tmi_reader *reader, tmi_segment *segment, int first
     if (!tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                       &reader->result->stats.work))
         return;
-    for (int cm = first; cm < first + count; cm++)
+    for (int cm = first; cm < first + count && may_go_on(reader); cm++)
         if (reasons[cm] != BELIEVED)
             read_both_ways(reader, segment, cm);
+}
+
+/* Whether at least one of the CMs shares with all words what CMs do. */
+static bool looks_like_tape(const tmi_segment *segment, int first, int count)
+{
+    for (int cm = first; cm < first + count; cm++)
+        if (real_max(segment->readings[UPRIGHT][cm].score, segment->readings[TURNED][cm].score) >= score_min)
+            return true;
+    return false;
 }
 
 /* Reads the CMs first..first + count - 1, between which there are no bars. */
@@ -271,7 +296,7 @@ static void read_part(const tmi_reader *reader, tmi_segment *segment, int first,
         return;
     tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
     float evidence = turn_evidence(segment, first, count);
-    if (judge_part(reader, segment, first, count, evidence, reasons) < count) {
+    if (judge_part(reader, segment, first, count, evidence, reasons) < count && looks_like_tape(segment, first, count)) {
         read_again(reader, segment, first, count, reasons);
         evidence = turn_evidence(segment, first, count);
         judge_part(reader, segment, first, count, evidence, reasons);
@@ -305,16 +330,13 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
 
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
 {
-    const int cm_count = finder_count - 1;
-    if (reader->result->stats.work >= reader->config->work_budget) {
-        reader->result->stats.limits |= TAPEMARK_LIMIT_WORK;
-        return;
-    }
-    for (int cm = 0; cm < cm_count; cm++) {
-        reader->result->stats.cms_tried++;
-        tmi_marker_map(reader->view, &segment->finders[cm], &segment->finders[cm + 1], &segment->maps[cm],
-                       &reader->result->stats.work);
-        read_both_ways(reader, segment, cm);
+    tapemark_stats *stats = &reader->result->stats;
+    int cm_count = 0;
+    for (; cm_count < finder_count - 1 && may_go_on(reader); cm_count++) {
+        stats->cms_tried++;
+        tmi_marker_map(reader->view, &segment->finders[cm_count], &segment->finders[cm_count + 1],
+                       &segment->maps[cm_count], &stats->work);
+        read_both_ways(reader, segment, cm_count);
     }
     int first = 0;
     for (int cm = 0; cm < cm_count; cm++)

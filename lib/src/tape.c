@@ -68,6 +68,11 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
  * so the product of the distances in modules of both ends is 25 squared. */
 static float misfit(const tmi_finder *f, int direction, const tmi_finder *other, int *direction_back)
 {
+    const float dx = other->centre.x - f->centre.x, dy = other->centre.y - f->centre.y;
+    const tmi_point along = axis(f, direction);
+    const float reach = 2 * pitch * (real_abs(along.x) + real_abs(along.y));
+    if (dx * along.x + dy * along.y <= 0 || real_abs(dx) > reach || real_abs(dy) > reach)
+        return -1; /* most are not even near: no need to turn anything */
     const tmi_finder from = turned(f, direction);
     const tmi_point there = to_modules(&from, other->centre);
     if (there.x < 0.6f * pitch || there.x > 1.7f * pitch || real_abs(there.y) > 0.18f * there.x)

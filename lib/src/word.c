@@ -21,6 +21,9 @@ enum {
     BITS = TAPEMARK_DATA_BITS + TMI_CHECKSUM_BITS
 };
 
+/* What preparing a match and scoring a word cost, in pixel reads (of some 50 instructions). */
+enum { PREPARE_WORK = 400, SCORE_WORK = 70 };
+
 /* The 86 cells that a word decides are numbered as bits: its data first, then its checksum. */
 static int cell_of(int bit)
 {
@@ -338,7 +341,7 @@ static void offer(shortlist *list, const candidate *word)
 
 /* All words made of the picked positions, of none to four of them: a walk over the subsets in which each
  * step adds the next position or takes the last one back. */
-static void list_words(const matcher *m, shortlist *list)
+static void list_words(const matcher *m, shortlist *list, uint32_t *work)
 {
     uint8_t picked[CANDIDATE_CELLS];
     float gains[CANDIDATE_CELLS];
@@ -359,6 +362,7 @@ static void list_words(const matcher *m, shortlist *list)
             word.positions[word.count++] = picked[next++];
             word.gain += gain;
             offer(list, &word);
+            ++*work;
         } else if (word.count > 0) {
             word.count--;
             word.gain = before[word.count];
@@ -460,12 +464,13 @@ static void best_two(const float *scores, const int32_t *ids, int count, const t
     out->odds = real_min(odds_max, unexplained(second) / unexplained(out->score));
 }
 
-void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading)
+void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading, uint32_t *work)
 {
     matcher m;
     shortlist list;
     prepare(&m, cells);
-    list_words(&m, &list);
+    list_words(&m, &list, work);
+    *work += PREPARE_WORK;
     contest c;
     begin_contest(&c, &m);
     float scores[CANDIDATE_WORDS];
@@ -477,6 +482,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         if (id == TMI_NO_ID || id > words->id_max || id < -words->id_max || !in_reach(&c, word))
             continue;
         scores[count] = score_word(&m, word);
+        *work += SCORE_WORK;
         c.best = real_max(c.best, scores[count]);
         ids[count++] = id;
     }

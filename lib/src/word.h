@@ -41,7 +41,7 @@ void tmi_cells_turn(tmi_cells *cells);
 float tmi_blank_score(tmi_cells *cells);
 
 /* The word of at most four ones (or zeros, where most cells are dark) that fits best, for cells whose scale
- * tmi_blank_score() has adjusted. */
-void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading);
+ * tmi_blank_score() has adjusted. `work` grows by what it costs, in pixel reads. */
+void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading, uint32_t *work);
 
 #endif
