@@ -10,6 +10,7 @@
 #include <climits>
 #include <cstdlib>
 #include <cstring>
+#include <dlfcn.h>
 #include <exception>
 #include <fcntl.h>
 #include <string>
@@ -161,12 +162,23 @@ void close_video(frame_source *source)
 
 const frame_source_methods video_methods = {next_video_frame, close_video};
 
+/* FFmpeg's own threads complain at any time. OpenCV brings the library along, but no header of it. */
+void quiet_ffmpeg()
+{
+    using level_setter = void (*)(int level);
+    constexpr int level_quiet = -8;
+    if (auto set_level = reinterpret_cast<level_setter>(dlsym(RTLD_DEFAULT, "av_log_set_level")))
+        set_level(level_quiet);
+}
+
 bool open_capture(video_file &file)
 {
     constexpr double most_frames = 1e9;
     quiet_stderr quiet;
     /* "file:" keeps FFmpeg from taking a colon in the name for a protocol. */
-    if (!file.capture.open("file:" + file.path, cv::CAP_FFMPEG))
+    bool opened = file.capture.open("file:" + file.path, cv::CAP_FFMPEG);
+    quiet_ffmpeg();  /* opening the first video sets the level */
+    if (!opened)
         return false;
     double frames = file.capture.get(cv::CAP_PROP_FRAME_COUNT);
     file.frames_expected = frames > 0 && frames < most_frames ? static_cast<uint64_t>(frames) : 0;

@@ -44,11 +44,14 @@ typedef struct decode_run {
 /* One line whatever the name and the text hold. `name` may be NULL. */
 static void print_error(const char *name, const char *text)
 {
-    const char *const parts[] = {PROGRAM, ": ", name != NULL ? name : "", name != NULL ? ": " : "", text};
-    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-        for (const char *c = parts[i]; *c != '\0'; c++)
-            fputc((unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c, stderr);
-    fputc('\n', stderr);
+    text_buffer line = {0};
+    if (name != NULL) {
+        text_buffer_add_printable(&line, name);
+        text_buffer_add(&line, ": ");
+    }
+    text_buffer_add_printable(&line, text);
+    fprintf(stderr, PROGRAM ": %s\n", line.text != NULL ? line.text : "not enough memory");
+    text_buffer_release(&line);
 }
 
 static void tell_input_error(decode_run *run, const char *path, const error_text *error)

@@ -71,6 +71,11 @@ static size_t utf8_length(const unsigned char *text)
     return length;
 }
 
+static bool is_control(char c)
+{
+    return (unsigned char)c < 0x20 || c == 0x7f;
+}
+
 void text_buffer_add_json_string(text_buffer *buffer, const char *text)
 {
     text_buffer_add(buffer, "\"");
@@ -80,13 +85,25 @@ void text_buffer_add_json_string(text_buffer *buffer, const char *text)
             text_buffer_add(buffer, "\\ufffd");
         else if (*text == '"' || *text == '\\')
             text_buffer_add(buffer, "\\%c", *text);
-        else if ((unsigned char)*text < 0x20 || *text == 0x7f)
+        else if (is_control(*text))
             text_buffer_add(buffer, "\\u%04x", (unsigned)*text);
         else
             text_buffer_add(buffer, "%.*s", (int)length, text);
         text += length > 0 ? length : 1;
     }
     text_buffer_add(buffer, "\"");
+}
+
+void text_buffer_add_printable(text_buffer *buffer, const char *text)
+{
+    while (*text != '\0') {
+        size_t length = utf8_length((const unsigned char *)text);
+        if (length == 0 || is_control(*text))
+            text_buffer_add(buffer, "?");
+        else
+            text_buffer_add(buffer, "%.*s", (int)length, text);
+        text += length > 0 ? length : 1;
+    }
 }
 
 void text_buffer_add_json_number(text_buffer *buffer, double number, int decimals)

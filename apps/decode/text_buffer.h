@@ -22,6 +22,9 @@ void text_buffer_add(text_buffer *buffer, const char *format, ...);
 /* Adds a JSON string with its quotes. Bytes that are no UTF-8 become U+FFFD. */
 void text_buffer_add_json_string(text_buffer *buffer, const char *text);
 
+/* Adds text for a terminal: what is no UTF-8 or a control character becomes a question mark. */
+void text_buffer_add_printable(text_buffer *buffer, const char *text);
+
 /* Adds a number with so many decimals; null for those that JSON does not know. */
 void text_buffer_add_json_number(text_buffer *buffer, double number, int decimals);
 

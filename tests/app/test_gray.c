@@ -142,6 +142,15 @@ static void bayer_of_ten_bits_rounds(void **state)
     expect_gray(PIXEL_SRGGB10P, 4, 1, 5, packed_lower, expected_lower);
 }
 
+static void bayer_samples_beyond_ten_bits_are_white(void **state)
+{
+    /* 0x0fff in the middle of nothing: 4 * 1023 / 64. */
+    static const uint8_t data[18] = {[8] = 0xff, [9] = 0x0f};
+    static const uint8_t expected[9] = {64, 64, 64, 64, 64, 64, 64, 64, 64};
+    (void)state;
+    expect_gray(PIXEL_SGBRG10, 3, 3, 6, data, expected);
+}
+
 /* The packed form is put together here as the kernel's documentation draws it: four bytes of upper bits, then a
  * byte with the lower bits, the first pixel's in bits 1 and 0. */
 static void packed_bayer_equals_unpacked(void **state)
@@ -285,6 +294,7 @@ int main(void)
         cmocka_unit_test(bayer_spreads_a_bright_pixel_over_nine),
         cmocka_unit_test(bayer_of_a_single_row_or_column),
         cmocka_unit_test(bayer_of_ten_bits_rounds),
+        cmocka_unit_test(bayer_samples_beyond_ten_bits_are_white),
         cmocka_unit_test(packed_bayer_equals_unpacked),
         cmocka_unit_test(converter_serves_frames_of_any_size_in_turn),
         cmocka_unit_test(layouts_are_understood),

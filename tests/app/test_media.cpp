@@ -174,6 +174,23 @@ void stills_without_loss(void **)
     }
 }
 
+/* Larger than what is read in one go. */
+void large_stills(void **)
+{
+    cv::Mat picture = noise(600, 500, CV_8UC1);
+    for (const char *ending : {".png", ".bmp"})
+        expect_still(encode(ending, picture), picture, 0);
+}
+
+void stills_of_extreme_sizes(void **)
+{
+    for (cv::Size size : {cv::Size(1, 1), cv::Size(65535, 1), cv::Size(1, 65535)}) {
+        cv::Mat picture = noise(size.width, size.height, CV_8UC1);
+        expect_still(encode(".png", picture), picture, 0);
+    }
+    expect_failure(encode(".png", noise(65536, 2, CV_8UC1)), 0, "is 65536 x 2 px; the largest side is 65535 px");
+}
+
 void deep_and_coloured_stills(void **)
 {
     cv::Mat gray = ramp(37, 21), deep, colour;
@@ -282,6 +299,9 @@ void mp4_without_its_index_is_cut_short(void **)
     bytes mp4 = {0, 0, 0, 16, 'f', 't', 'y', 'p', 'i', 's', 'o', 'm', 0, 0, 0, 0,
                  0, 0, 1, 0,  'm', 'd', 'a', 't', 1, 2};
     expect_failure(mp4, 0, "is cut short: 246 bytes are missing");
+    bytes larger = mp4 + bytes(200000);
+    larger[17] = 8;  /* half a megabyte */
+    expect_failure(larger, 0, "is cut short: 324534 bytes are missing");
     mp4[17] = 0, mp4[18] = 0, mp4[19] = 10;  /* complete, but without any video */
     expect_failure(mp4, 0, "is a video that cannot be read");
 }
@@ -315,6 +335,8 @@ int main()
         cmocka_unit_test(luma_as_opencv_has_it),
         cmocka_unit_test(bayer_as_opencv_filters_it),
         cmocka_unit_test(stills_without_loss),
+        cmocka_unit_test(large_stills),
+        cmocka_unit_test(stills_of_extreme_sizes),
         cmocka_unit_test(deep_and_coloured_stills),
         cmocka_unit_test(transparent_stills_lie_on_white),
         cmocka_unit_test(jpegs_one_after_the_other),

@@ -206,6 +206,26 @@ static void y4m_of_more_bits(void **state)
     expect_content(LITERAL("YUV4MPEG2 W2 H1 Cmono16\nFRAME\n\x00\x80\x00\x01"), NULL, sixteen, 1, NULL);
 }
 
+/* Larger than what is read ahead, so that the reader jumps. */
+static void y4m_with_large_chroma(void **state)
+{
+    enum { SIDE_PX = 400, LUMA_BYTES = SIDE_PX * SIDE_PX, FRAME_BYTES = 3 * LUMA_BYTES };
+    static const char header[] = "YUV4MPEG2 W400 H400 C444\n";
+    static uint8_t bytes[sizeof header - 1 + 2 * (6 + FRAME_BYTES)];
+    uint8_t *frame_header = bytes + sizeof header - 1;
+    (void)state;
+    memcpy(bytes, header, sizeof header - 1);
+    for (int i = 0; i < 2; i++, frame_header += 6 + FRAME_BYTES) {
+        memcpy(frame_header, "FRAME\n", 6);
+        memset(frame_header + 6, 10 + i, LUMA_BYTES);
+        memset(frame_header + 6 + LUMA_BYTES, 99, FRAME_BYTES - LUMA_BYTES);
+    }
+    const uint8_t *luma = bytes + sizeof header - 1 + 6;
+    const expected_frame frames[] = {{SIDE_PX, SIDE_PX, luma}, {SIDE_PX, SIDE_PX, luma + FRAME_BYTES + 6}};
+    expect_content(bytes, sizeof bytes, NULL, frames, 2, NULL);
+    expect_content(bytes, sizeof bytes - 1, NULL, frames, 1, "frame 1 needs 480000 bytes, and 479999 are left");
+}
+
 static void y4m_cut_anywhere(void **state)
 {
     static const uint8_t bytes[] = "YUV4MPEG2 W2 H2 C420\nFRAME\nabcduvFRAME\nefghuv";
@@ -336,6 +356,7 @@ int main(void)
         cmocka_unit_test(wrong_pgm_headers),
         cmocka_unit_test(y4m_of_each_chroma_scheme),
         cmocka_unit_test(y4m_of_more_bits),
+        cmocka_unit_test(y4m_with_large_chroma),
         cmocka_unit_test(y4m_cut_anywhere),
         cmocka_unit_test(y4m_frames_have_times),
         cmocka_unit_test(y4m_that_cannot_be_read),

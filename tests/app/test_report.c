@@ -195,6 +195,15 @@ static void sources_are_escaped(void **state)
     }
 }
 
+static void messages_are_printable(void **state)
+{
+    text_buffer text = {0};
+    (void)state;
+    text_buffer_add_printable(&text, "gr\xc3\xbc\xc3\x9f\n\x1b[2J\x7f\xff%s");
+    assert_string_equal(text.text, "gr\xc3\xbc\xc3\x9f??[2J??%s");
+    text_buffer_release(&text);
+}
+
 static void numbers_that_json_lacks_are_null(void **state)
 {
     text_buffer text = {0};
@@ -354,6 +363,7 @@ int main(void)
         cmocka_unit_test(limits_are_named),
         cmocka_unit_test(every_limit_has_a_name),
         cmocka_unit_test(sources_are_escaped),
+        cmocka_unit_test(messages_are_printable),
         cmocka_unit_test(numbers_that_json_lacks_are_null),
         cmocka_unit_test(csv_has_a_row_a_marker),
         cmocka_unit_test(csv_quotes_what_needs_it),
