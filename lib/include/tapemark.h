@@ -146,8 +146,9 @@ typedef struct tapemark_config {
      * other id is reported. NULL with count 0: every id up to id_max. */
     const int32_t *known_ids;
     size_t known_id_count;
-    /* Work allowed after the first pass over the image, in pixel reads. It bounds the time of the worst
-     * frame. 0: tapemark_default_work_budget(). */
+    /* Work allowed after the first pass over the image, in pixel reads (of some 100 instructions, all told). It
+     * bounds the time of the worst frame: what is underway when it is spent, at most one CM or TM, is ended, and
+     * each CM that was read adds 2500, so that only work in vain counts. 0: tapemark_default_work_budget(). */
     uint32_t work_budget;
 } tapemark_config;
 

@@ -14,7 +14,7 @@ enum { TILE_WORK = 2 * TAPEMARK_TILE_PX * TAPEMARK_TILE_PX / LINE_SPACING };
 
 /* Parts of the work budget up to which lines are scanned, finder patterns tried and missing ones looked for; what
  * is left is for reading. */
-enum { SCAN_PERCENT = 40, TRY_PERCENT = 70, GROW_PERCENT = 80 };
+enum { SCAN_PERCENT = 40, TRY_PERCENT = 68, GROW_PERCENT = 78 };
 
 /* Comparing a hit with the finders already there costs as much as this many pixel reads. */
 enum { HIT_WORK = 8 };
@@ -46,7 +46,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 {
     if (!size_is_valid(width_px, height_px))
         return 0;
-    return 180000 + (uint32_t)width_px * (uint32_t)height_px / 12;
+    return 140000 + (uint32_t)width_px * (uint32_t)height_px / 25;
 }
 
 /* ---- From scan lines to finder patterns ---------------------------------------------------------------------- */

@@ -38,15 +38,19 @@ static tmi_point corrected(const tmi_homography *map, float u0, float v, const t
     return tmi_project(map, u0 + by->u[0] + by->u[2] * v, v + by->v[0] + by->v[2] * v);
 }
 
+void tmi_marker_map(const tmi_finder *left, const tmi_finder *right, tmi_homography *map)
+{
+    const tmi_point p[4] = {tmi_at(left, 0, -3.5f), tmi_at(right, 0, -3.5f), tmi_at(right, 0, 3.5f),
+                            tmi_at(left, 0, 3.5f)};
+    map_corners(p, PITCH, map);
+}
+
 /* Modules; where the finders lie this near to where the map has them, it is good. */
 static const float settled = 0.06f;
 
-void tmi_marker_map(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
-                    uint32_t *reads)
+void tmi_marker_refine(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
+                       uint32_t *reads)
 {
-    const tmi_point seen[4] = {tmi_at(left, 0, -3.5f), tmi_at(right, 0, -3.5f), tmi_at(right, 0, 3.5f),
-                               tmi_at(left, 0, 3.5f)};
-    map_corners(seen, PITCH, map);
     const float contrast_min = 0.05f * (left->light - left->dark + right->light - right->dark);
     for (int step = 0; step < 2; step++) {
         tmi_offsets at_left, at_right;
@@ -194,6 +198,19 @@ static bool fit_levels(const tmi_view *view, const tmi_homography *map, raster r
     out->leak_along = p[1];
     out->leak_across = p[2];
     return true;
+}
+
+void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left, const tmi_finder *right,
+                       tmi_cells *cells, uint32_t *reads)
+{
+    const float light = 0.5f * (left->light + right->light), dark = 0.5f * (left->dark + right->dark);
+    const float scale = 1 / real_max(1, light - dark);
+    cells->leak_along = cells->leak_across = 0.1f;
+    for (int i = 0; i < TAPEMARK_CELLS; i++) {
+        const tmi_point at = tmi_project(map, (float)(FIRST_COLUMN + i % COLUMNS), (float)(i / COLUMNS - 3));
+        cells->value[i] = (light - tmi_sample(view, at.x, at.y)) * scale;
+    }
+    *reads += TAPEMARK_CELLS;
 }
 
 bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float contrast_min, tmi_cells *cells,

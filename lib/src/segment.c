@@ -17,12 +17,20 @@ static const float turn_clear = 0.3f;
 /* What shares less than this with all words is not worth comparing with each. A dark CM has three light alignment
  * cells only, among up to twelve that are its word's. */
 static const float blank_min = 0.3f;
+/* The same for a first look. */
+static const float glance_min = 0.2f;
+
+/* Comparing cells with what all words share, both ways up, costs as much as this many pixel reads. */
+enum { BLANK_WORK = 250 };
+
+/* A CM that is believed has paid for itself: the budget bounds what is spent in vain. */
+enum { CM_CREDIT = 2500 };
 
 /* Whether there is work left; notes the limit where there is none. */
 static bool may_go_on(const tmi_reader *reader)
 {
     tapemark_stats *stats = &reader->result->stats;
-    if (stats->work < reader->config->work_budget)
+    if (stats->work < (uint64_t)reader->config->work_budget + (uint64_t)CM_CREDIT * reader->result->cm_count)
         return true;
     stats->limits |= TAPEMARK_LIMIT_WORK;
     return false;
@@ -40,6 +48,7 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
     tmi_cells turned = cells;
     tmi_cells_turn(&turned);
     const float blank[2] = {tmi_blank_score(&cells), tmi_blank_score(&turned)};
+    stats->work += BLANK_WORK;
     const float better = real_max(blank[UPRIGHT], blank[TURNED]);
     for (int way = UPRIGHT; way <= TURNED; way++) {
         segment->readings[way][cm].score = blank[way];
@@ -48,6 +57,33 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
         tmi_word_match(way == UPRIGHT ? &cells : &turned, &reader->words, &segment->readings[way][cm],
                        &stats->work);
     }
+}
+
+/* Whether what lies between two finders may be a CM, by a first look; places off by half a module still are. */
+static bool may_be_cm(const tmi_reader *reader, const tmi_segment *segment, int cm)
+{
+    tapemark_stats *stats = &reader->result->stats;
+    tmi_cells cells;
+    tmi_marker_glance(reader->view, &segment->maps[cm], &segment->finders[cm], &segment->finders[cm + 1], &cells,
+                      &stats->work);
+    tmi_cells turned = cells;
+    tmi_cells_turn(&turned);
+    stats->work += BLANK_WORK;
+    return tmi_blank_score(&cells) >= glance_min || tmi_blank_score(&turned) >= glance_min;
+}
+
+static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
+{
+    tapemark_stats *stats = &reader->result->stats;
+    const tmi_finder *left = &segment->finders[cm], *right = left + 1;
+    stats->cms_tried++;
+    for (int way = UPRIGHT; way <= TURNED; way++)
+        segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
+    tmi_marker_map(left, right, &segment->maps[cm]);
+    if (!may_be_cm(reader, segment, cm))
+        return;
+    tmi_marker_refine(reader->view, left, right, &segment->maps[cm], &stats->work);
+    read_both_ways(reader, segment, cm);
 }
 
 /* Bars have to correlate with ideal ones by this much. */
@@ -330,14 +366,9 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
 
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
 {
-    tapemark_stats *stats = &reader->result->stats;
     int cm_count = 0;
-    for (; cm_count < finder_count - 1 && may_go_on(reader); cm_count++) {
-        stats->cms_tried++;
-        tmi_marker_map(reader->view, &segment->finders[cm_count], &segment->finders[cm_count + 1],
-                       &segment->maps[cm_count], &stats->work);
-        read_both_ways(reader, segment, cm_count);
-    }
+    for (; cm_count < finder_count - 1 && may_go_on(reader); cm_count++)
+        read_cm(reader, segment, cm_count);
     int first = 0;
     for (int cm = 0; cm < cm_count; cm++)
         if (is_joint(reader, segment, cm)) {

@@ -8,7 +8,7 @@
 #include "tapemark.h"
 
 enum {
-    TMI_MAX_FINDERS = 160,
+    TMI_MAX_FINDERS = 128,
     TMI_MAX_CHAIN = TAPEMARK_TM_MAX_CMS + 1,
     TMI_NONE = -1
 };
