@@ -1,0 +1,171 @@
+/* Pictures without a marker: nothing is read, nothing breaks, and the work stays within its bounds. */
+#include "decoding.h"
+
+#include "random.h"
+
+/* A segment that was begun within the budget is read to its end: the most that may come on top. */
+enum { SLACK_READS = 80000 };
+
+static void assert_nothing_and_bounded(const decoding *got, uint32_t budget)
+{
+    assert_no_marker(got);
+    if (got->result.stats.work > budget + SLACK_READS)
+        fail_msg("%s: %u reads with a budget of %u", got->name, (unsigned)got->result.stats.work, (unsigned)budget);
+}
+
+/* ---- Rendered clutter -------------------------------------------------------------------------------------- */
+
+/* Each kind in sizes from a pixel up, as a good camera sees it; `seen` counts pictures in which there was something
+ * for the decoder to look at. */
+static void find_nothing_in(scene_clutter kind, int32_t width_px, int32_t height_px, unsigned *limited)
+{
+    static const double scales_px[] = {1, 1.7, 3, 5, 9, 20};
+    for (size_t i = 0; i < COUNT_OF(scales_px); i++)
+        for (int angle_deg = 0; angle_deg <= 30; angle_deg += 15) {
+            scene view = scene_default(width_px, height_px);
+            view.background = (scene_background){.kind = kind, .light = 230, .dark = 40, .scale_px = scales_px[i],
+                                                 .angle_deg = angle_deg, .room = {3, 1}};
+            view.seed = i + 1;
+            const decoding *got = decode_scene(&view, NULL, "clutter %d of %g px, %d degrees", (int)kind,
+                                               scales_px[i], angle_deg);
+            assert_nothing_and_bounded(got, tapemark_default_work_budget(width_px, height_px));
+            *limited += got->result.stats.limits != 0;
+        }
+}
+
+static void finds_nothing_in_clutter(void **state)
+{
+    (void)state;
+    unsigned limited = 0;
+    for (int kind = SCENE_PLAIN; kind < SCENE_CLUTTER_COUNT; kind++)
+        find_nothing_in((scene_clutter)kind, 320, 240, &limited);
+    assert_true(limited > 0); /* some of it was too much to look at all of it */
+}
+
+static void a_small_budget_bounds_the_work_on_clutter(void **state)
+{
+    (void)state;
+    static const uint32_t budgets[] = {1, 1000, 20000};
+    for (int kind = SCENE_NOISE; kind < SCENE_ROOM; kind++)
+        for (size_t i = 0; i < COUNT_OF(budgets); i++) {
+            scene view = scene_default(640, 480);
+            view.background = (scene_background){.kind = (scene_clutter)kind, .light = 230, .dark = 40,
+                                                 .scale_px = 3, .angle_deg = 5};
+            const tapemark_config config = {.work_budget = budgets[i]};
+            assert_nothing_and_bounded(decode_scene(&view, &config, "clutter %d", kind), budgets[i]);
+        }
+}
+
+/* Sheets full of tapes, more than can be looked at: part of them is read, and what is read is right. */
+static void a_sheet_of_tapes_stays_within_bounds(void **state)
+{
+    (void)state;
+    enum { ROWS_MAX = 40, CMS = 5 };
+    static const struct {
+        double px_per_module, pitch_px;
+    } sheets[] = {{1.7, 16}, {2.5, 33}, {3, 27.6}, {3, 50}};
+    static int32_t ids[ROWS_MAX][CMS];
+    static scene_tape tapes[ROWS_MAX];
+    for (size_t i = 0; i < COUNT_OF(sheets); i++) {
+        const int rows = (int)(610 / sheets[i].pitch_px);
+        scene view = scene_default(640, 640);
+        for (int row = 0; row < rows; row++) {
+            ids_for_code("10110", CMS * row + 1, ids[row]);
+            tapes[row] = scene_tape_of(ids[row], CMS, true);
+            scene_place(&view, &tapes[row], (scene_pose){.px_per_module = sheets[i].px_per_module,
+                                                         .dy_px = sheets[i].pitch_px * (row - 0.5 * (rows - 1))});
+        }
+        view.tapes = tapes;
+        view.tape_count = (size_t)rows;
+        const decoding *got = decode_scene(&view, NULL, "sheet of %d tapes", rows);
+        assert_nothing_wrong(got, &view);
+        assert_true(got->result.stats.work <= tapemark_default_work_budget(640, 640) + SLACK_READS);
+        if (count_read(got) < 2 * CMS)
+            fail_msg("%s: %u of %u CMs were read", got->name, (unsigned)count_read(got), (unsigned)got->truth.cm_count);
+    }
+}
+
+/* ---- Plain gray values -------------------------------------------------------------------------------------- */
+
+static void find_nothing_in_pixels(const uint8_t *pixels, int32_t width_px, int32_t height_px)
+{
+    for (int polarity = 0; polarity < 2; polarity++) {
+        const tapemark_config config = {.polarity = (tapemark_polarity)polarity, .contrast_min = 1};
+        assert_nothing_and_bounded(decode_pixels(pixels, width_px, height_px, &config),
+                                   tapemark_default_work_budget(width_px, height_px));
+    }
+}
+
+static void finds_nothing_in_noise(void **state)
+{
+    (void)state;
+    enum { SIDE = 200 };
+    static uint8_t pixels[SIDE * SIDE];
+    for (uint64_t seed = 1; seed <= 40; seed++) {
+        random_source source = {seed};
+        const bool binary = seed % 2;
+        for (size_t i = 0; i < sizeof pixels; i++) {
+            const uint8_t value = (uint8_t)(random_bits(&source) >> 32);
+            pixels[i] = binary ? (uint8_t)(value < 128 ? 20 : 230) : value;
+        }
+        find_nothing_in_pixels(pixels, SIDE, SIDE);
+    }
+}
+
+static void finds_nothing_in_checkerboards(void **state)
+{
+    (void)state;
+    enum { WIDTH = 230, HEIGHT = 170 };
+    static uint8_t pixels[WIDTH * HEIGHT];
+    for (int square = 1; square <= 32; square++) {
+        for (int y = 0; y < HEIGHT; y++)
+            for (int x = 0; x < WIDTH; x++)
+                pixels[y * WIDTH + x] = (x / square + y / square) % 2 ? 255 : 0;
+        find_nothing_in_pixels(pixels, WIDTH, HEIGHT);
+    }
+}
+
+static void finds_nothing_in_odd_sizes(void **state)
+{
+    (void)state;
+    static const int32_t sizes[][2] = {{1, 1}, {1, 65535}, {65535, 1}, {2, 65535}, {65535, 2}, {7, 7}, {8, 8},
+                                       {9, 8}, {8, 9}, {15, 17}, {16, 16}, {33, 17}, {65535, 8}, {8, 65535}};
+    static uint8_t pixels[9 * 65535];
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        const size_t count = (size_t)sizes[i][0] * (size_t)sizes[i][1];
+        assert_true(count <= sizeof pixels);
+        for (int fill = 0; fill < 3; fill++) {
+            random_source source = {i};
+            for (size_t p = 0; p < count; p++)
+                pixels[p] = fill == 2 ? (uint8_t)(random_bits(&source) >> 40) : fill ? 255 : 0;
+            find_nothing_in_pixels(pixels, sizes[i][0], sizes[i][1]);
+        }
+    }
+}
+
+static void says_that_nothing_was_found_where_there_is_nothing(void **state)
+{
+    (void)state;
+    static uint8_t pixels[640 * 480];
+    for (int gray = 0; gray < 256; gray += 51) {
+        memset(pixels, gray, sizeof pixels);
+        const decoding *got = decode_pixels(pixels, 640, 480, NULL);
+        assert_int_equal(got->status, TAPEMARK_NOTHING_FOUND);
+        assert_int_equal(got->result.stats.tiles_active, 0);
+        assert_int_equal(got->result.stats.work, 0);
+    }
+}
+
+int main(void)
+{
+    static const struct CMUnitTest tests[] = {
+        cmocka_unit_test(finds_nothing_in_clutter),
+        cmocka_unit_test(a_small_budget_bounds_the_work_on_clutter),
+        cmocka_unit_test(a_sheet_of_tapes_stays_within_bounds),
+        cmocka_unit_test(finds_nothing_in_noise),
+        cmocka_unit_test(finds_nothing_in_checkerboards),
+        cmocka_unit_test(finds_nothing_in_odd_sizes),
+        cmocka_unit_test(says_that_nothing_was_found_where_there_is_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
