@@ -108,23 +108,30 @@ static float turn_evidence(const tmi_segment *segment, int first, int count)
 
 /* Correlations below this say nothing about a CM; those of right readings have a median of 0.99. */
 static const float score_min = 0.8f;
-/* The second best word must leave this many times as much unexplained as the best one. Over some 8000 CMs of
- * rendered and real frames, a third of them below 1.5 px a module, no wrong word of that score reached it. */
-static const float odds_min = 1.45f;
 /* What shares this little with all words is no CM. */
 static const float cm_score = 0.5f;
-/* What is enough where the next CM of the segment is sure and its id says the same, and what is needed where it says
- * otherwise: ids ascend along a segment. */
-static const float odds_min_supported = 1.15f, odds_min_opposed = 2;
-/* Cells that show the opposite of the word: dirt, or a word that is none. */
-static const int contrary_max = 1;
+
+/* What a reading has to be to be believed. */
+typedef struct standard {
+    float odds;   /* that the second best word leaves this many times as much unexplained as the best one */
+    int contrary; /* that no more cells than this show the opposite of the word: dirt, or a word that is none */
+} standard;
+
+/* For a CM that stands alone. Of grids that are no words (two cells flipped, words of five ones, true alignment cells
+ * around random data; 2 500 of each, 3 px a module) 2 to 18 in a thousand get through; two to three times as many
+ * would with one contradiction allowed. Of right CMs none is lost from 2 px a module on, 2 % at 1.2 px. */
+static const standard alone = {1.6f, 0};
+/* Where the next CM of the segment is sure and its id says the same: ids ascend along a segment. */
+static const standard supported = {1.15f, 1};
+/* Where it says otherwise. */
+static const standard opposed = {2, 0};
 
 /* There are 3 082 words of up to two ones, 76 076 of three and 1 426 425 of four: the more of them there are, the
  * likelier one fits by chance. */
 static float odds_factor(int32_t id)
 {
     const int32_t rank = id < 0 ? -id : id;
-    return rank <= 3081 ? 1 : rank <= 79157 ? 1.15f : 1.35f;
+    return rank <= 3081 ? 1 : rank <= 79157 ? 1.25f : 1.55f;
 }
 
 /* The id `steps` CMs further on, but for its sign. */
@@ -133,13 +140,13 @@ static int32_t rank(const tmi_reading *reading, int steps)
     return (reading->id < 0 ? -reading->id : reading->id) + steps;
 }
 
-/* The reason not to believe a reading with these odds needed, or BELIEVED. */
-static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *reading, float odds_needed)
+/* The reason not to believe a reading by that standard, or BELIEVED. */
+static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *reading, const standard *needed)
 {
-    if (reading->id == TMI_NO_ID || reading->score < score_min || reading->contrary > contrary_max ||
+    if (reading->id == TMI_NO_ID || reading->score < score_min || reading->contrary > needed->contrary ||
         tmi_reading_confidence(reading) < reader->config->confidence_min)
         return TAPEMARK_REJECT_SCORE;
-    if (reading->odds < odds_needed * odds_factor(reading->id))
+    if (reading->odds < needed->odds * odds_factor(reading->id))
         return TAPEMARK_REJECT_MARGIN;
     return reading->unknown ? TAPEMARK_REJECT_UNKNOWN_ID : BELIEVED;
 }
@@ -148,20 +155,22 @@ static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *readin
 static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readings, int cm, int first, int last, int step)
 {
     const tmi_reading *own = &readings[cm];
-    bool supported = false, opposed = false;
+    bool has_support = false, has_opposition = false;
     for (int side = -1; side <= 1; side += 2) {
         const int other = cm + side;
         if (other < first || other > last || own->id == TMI_NO_ID ||
-            doubt(reader, &readings[other], odds_min) != BELIEVED)
+            doubt(reader, &readings[other], &alone) != BELIEVED)
             continue;
         if (rank(own, side * step) == rank(&readings[other], 0))
-            supported = true;
+            has_support = true;
         else
-            opposed = true;
+            has_opposition = true;
     }
-    const float needed = supported ? odds_min_supported : opposed ? odds_min_opposed : odds_min;
-    const tapemark_reject reason = doubt(reader, own, needed);
-    return reason == TAPEMARK_REJECT_MARGIN && opposed && !supported ? TAPEMARK_REJECT_CONFLICT : reason;
+    if (has_support)
+        return doubt(reader, own, &supported);
+    const tapemark_reject reason = doubt(reader, own, &alone);
+    return reason == BELIEVED && has_opposition && doubt(reader, own, &opposed) != BELIEVED ? TAPEMARK_REJECT_CONFLICT
+                                                                                           : reason;
 }
 
 /* ---- Reporting --------------------------------------------------------------------------------------------- */
