@@ -96,32 +96,49 @@ static void code_of(const scene_tape *tape, bool backwards, char code[SCENE_CMS_
     code[tape->cm_count] = '\0';
 }
 
+/* How far from its true place a reading may be to be a reading of it at all. */
+static double reach_of(const tapemark_point corners[4])
+{
+    return 0.1 * length_of(corners) + 2;
+}
+
 static const scene_cm_truth *truth_of_cm(const decoding *got, const tapemark_cm *cm)
 {
+    const scene_cm_truth *nearest = NULL;
+    double least = INFINITY;
     for (size_t i = 0; i < got->truth.cm_count; i++) {
         const scene_cm_truth *true_cm = &got->truth.cms[i];
-        if (true_cm->id == cm->id &&
-            centres_apart(true_cm->corners, cm->corners) < 0.1 * length_of(true_cm->corners) + 2)
-            return true_cm;
+        const double apart = centres_apart(true_cm->corners, cm->corners);
+        if (true_cm->id == cm->id && apart < reach_of(true_cm->corners) && apart < least) {
+            nearest = true_cm;
+            least = apart;
+        }
     }
-    return NULL;
+    return nearest;
+}
+
+static bool is_code_of(const scene_tape *tape, const tapemark_tm *tm)
+{
+    char forwards[SCENE_CMS_MAX + 1], backwards[SCENE_CMS_MAX + 1];
+    code_of(tape, false, forwards);
+    code_of(tape, true, backwards);
+    return strcmp(tm->code, forwards) == 0 || (!tm->directed && strcmp(tm->code, backwards) == 0);
 }
 
 static const scene_tape_truth *truth_of_tm(const decoding *got, const scene *view, const tapemark_tm *tm)
 {
+    const scene_tape_truth *nearest = NULL;
+    double least = INFINITY;
     for (size_t i = 0; i < got->truth.tape_count; i++) {
         const scene_tape_truth *true_tape = &got->truth.tapes[i];
         const scene_tape *tape = &view->tapes[true_tape->tape];
-        char forwards[SCENE_CMS_MAX + 1], backwards[SCENE_CMS_MAX + 1];
-        code_of(tape, false, forwards);
-        code_of(tape, true, backwards);
-        const bool same_code =
-            strcmp(tm->code, forwards) == 0 || (!tm->directed && strcmp(tm->code, backwards) == 0);
-        if (tape->bars && same_code &&
-            centres_apart(true_tape->corners, tm->corners) < 0.1 * length_of(true_tape->corners) + 2)
-            return true_tape;
+        const double apart = centres_apart(true_tape->corners, tm->corners);
+        if (tape->bars && is_code_of(tape, tm) && apart < reach_of(true_tape->corners) && apart < least) {
+            nearest = true_tape;
+            least = apart;
+        }
     }
-    return NULL;
+    return nearest;
 }
 
 static void assert_cm_right(const decoding *got, const scene *view, const tapemark_cm *cm)
