@@ -1,34 +1,19 @@
 #include "word.h"
 
 #include "code.h"
+#include "evidence.h"
 #include "real.h"
-
-#include <string.h>
-
-/*
- * How a word is scored. The print is blurred: a dark module also darkens its neighbours. With leaks a (along)
- * and c (across) a single dark module is seen as the bump [c, 1 - 2c, c]' * [a, 1 - 2a, a]. The expected cells of
- * a word are those of a blank one (no ones, checksum cells all 0) plus one bump for each cell that differs, so
- * that sums over 112 cells are needed once, and each word costs only as much as it has cells that differ.
- */
 
 enum {
     ROWS = TAPEMARK_CELL_ROWS,
     COLUMNS = TAPEMARK_CELL_COLUMNS,
     CELLS = TAPEMARK_CELLS,
     CANDIDATE_CELLS = 10, /* the data cells most likely to differ; words are made of these */
-    CANDIDATE_WORDS = 24, /* of those words, how many get their checksum compared */
-    BITS = TAPEMARK_DATA_BITS + TMI_CHECKSUM_BITS
+    CANDIDATE_WORDS = 32  /* of those words, how many get their checksum compared */
 };
 
 /* What preparing a match and scoring a word cost, in pixel reads (of some 50 instructions). */
 enum { PREPARE_WORK = 400, SCORE_WORK = 70 };
-
-/* The 86 cells that a word decides are numbered as bits: its data first, then its checksum. */
-static int cell_of(int bit)
-{
-    return bit < TAPEMARK_DATA_BITS ? tmi_data_cell[bit] : tmi_checksum_cell[bit - TAPEMARK_DATA_BITS];
-}
 
 /* Data cells at which less than about a fifth of a one is to be seen are no candidates: those whose change, cost
  * included, would gain less than this part of a one's energy. */
@@ -41,276 +26,34 @@ static const float one_cost = 0.35f;
 /* Correlations closer than this do not tell two words apart; then the caller's list of ids may. */
 static const float known_id_bonus = 0.03f;
 
-/* Sums over the 112 cells of a bump times what is seen there, and times the blank word. */
-typedef struct bump {
-    float on_seen;
-    float on_blank;
-} bump;
-
-typedef struct matcher {
-    float along[3], across[3];         /* overlap of two bumps that many cells apart */
-    float last_along, first_across;    /* of a bump with itself where the region's edge cuts it off */
-    float leak_along, leak_across;
-    float sign;                        /* +1: ones are dark on light; -1: zeros are light on dark */
-    float seen_sum, seen_energy, blank_sum, blank_energy, seen_blank;
-    bump bumps[BITS];
-} matcher;
-
 typedef struct candidate {
-    float gain; /* by how much the squared error falls below the blank word's, checksum cells left out */
+    float gain; /* what its ones take off the squared error, one_cost included; for choosing words to look at */
     uint8_t count, positions[TAPEMARK_MAX_ONES];
 } candidate;
 
-void tmi_cells_turn(tmi_cells *cells)
-{
-    for (int i = 0; i < CELLS / 2; i++) {
-        const float kept = cells->value[i];
-        cells->value[i] = cells->value[CELLS - 1 - i];
-        cells->value[CELLS - 1 - i] = kept;
-    }
-}
-
-/* ---- Expected cells --------------------------------------------------------------------------------- */
-
-/* One row of modules, blurred along the tape. Beside the coding region there is a light module. */
-static float blurred_along(uint32_t row, int column, float leak)
-{
-    const uint32_t bits = row << 1;
-    const uint32_t left = bits >> (17 - column) & 1, here = bits >> (16 - column) & 1, right = bits >> (15 - column) & 1;
-    return (1 - 2 * leak) * (float)here + leak * (float)(left + right);
-}
-
-/* The blank word, blurred. Above and below the coding region there is a light row. */
-static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
-{
-    uint32_t rows[ROWS + 2] = {0};
-    for (int row = 0; row < ROWS; row++)
-        rows[row + 1] = dark ? 0xffffu & ~(uint32_t)tmi_light_rows[row] : tmi_dark_rows[row];
-    const float a = cells->leak_along, c = cells->leak_across;
-    for (int i = 0; i < CELLS; i++) {
-        const uint32_t *row = &rows[i / COLUMNS];
-        const int column = i % COLUMNS;
-        out[i] = c * (blurred_along(row[0], column, a) + blurred_along(row[2], column, a)) +
-                 (1 - 2 * c) * blurred_along(row[1], column, a);
-    }
-}
-
-static bump measure_bump(const tmi_cells *cells, const float *blank, int cell)
-{
-    const float along[3] = {cells->leak_along, 1 - 2 * cells->leak_along, cells->leak_along};
-    const float across[3] = {cells->leak_across, 1 - 2 * cells->leak_across, cells->leak_across};
-    const int row = cell / COLUMNS, column = cell % COLUMNS;
-    bump out = {0};
-    for (int dy = row > 0 ? -1 : 0; dy <= (row < ROWS - 1 ? 1 : 0); dy++)
-        for (int dx = column > 0 ? -1 : 0; dx <= (column < COLUMNS - 1 ? 1 : 0); dx++) {
-            const float w = along[dx + 1] * across[dy + 1];
-            const int i = cell + dy * COLUMNS + dx;
-            out.on_seen += w * cells->value[i];
-            out.on_blank += w * blank[i];
-        }
-    return out;
-}
-
-/* The bits' cells lie in columns 1 to 15 and rows 0 to 5: bumps can lose their right and their upper side. */
-static bool at_right(int bit)
-{
-    return cell_of(bit) % COLUMNS == COLUMNS - 1;
-}
-
-static bool at_top(int bit)
-{
-    return cell_of(bit) < COLUMNS;
-}
-
-static float bump_mass(const matcher *m, int bit)
-{
-    return (at_right(bit) ? 1 - m->leak_along : 1) * (at_top(bit) ? 1 - m->leak_across : 1);
-}
-
-static float bump_energy(const matcher *m, int bit)
-{
-    return (at_right(bit) ? m->last_along : m->along[0]) * (at_top(bit) ? m->first_across : m->across[0]);
-}
-
-static void overlaps(float leak, float out[3])
-{
-    const float middle = 1 - 2 * leak;
-    out[0] = middle * middle + 2 * leak * leak;
-    out[1] = 2 * leak * middle;
-    out[2] = leak * leak;
-}
-
-static float overlap(const matcher *m, int bit, int other_bit)
-{
-    const int cell = cell_of(bit), other = cell_of(other_bit);
-    const int rows = cell / COLUMNS - other / COLUMNS, columns = cell % COLUMNS - other % COLUMNS;
-    if (rows < -2 || rows > 2 || columns < -2 || columns > 2)
-        return 0;
-    return m->across[rows < 0 ? -rows : rows] * m->along[columns < 0 ? -columns : columns];
-}
-
-/* Straight line that takes the cells seen nearest to the blank word's, over those within `reach` of it. */
-static void fit_line(const float *seen, const float *blank, float reach, float *gain, float *offset)
-{
-    float n = 0, x = 0, y = 0, xx = 0, xy = 0;
-    for (int i = 0; i < CELLS; i++) {
-        if (real_abs(*gain * seen[i] + *offset - blank[i]) > reach)
-            continue;
-        n++;
-        x += seen[i];
-        y += blank[i];
-        xx += seen[i] * seen[i];
-        xy += seen[i] * blank[i];
-    }
-    const float variance = n * xx - x * x;
-    if (!(variance > 1e-4f * n * n))
-        return;
-    *gain = real_max(0.7f, real_min(2, (n * xy - x * y) / variance));
-    *offset = (y - *gain * x) / n;
-}
-
-/* What most data cells are: their mean, then again without those far from it, which are ones or zeros. */
-static float usual_data(const float *cells)
-{
-    float usual = 0.5f, reach = 10;
-    for (int pass = 0; pass < 3; pass++, reach = 0.25f) {
-        float sum = 0, count = 0;
-        for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
-            const float value = cells[tmi_data_cell[i]];
-            if (real_abs(value - usual) > reach)
-                continue;
-            sum += value;
-            count++;
-        }
-        if (count > 0)
-            usual = sum / count;
-    }
-    return usual;
-}
-
-/* Mean of the alignment cells that differ from most data cells: dark ones in light words, else light ones. */
-static float mean_alignment(const float *cells, const uint16_t rows[ROWS])
-{
-    float sum = 0, count = 0;
-    for (int i = 0; i < CELLS; i++)
-        if (rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1) {
-            sum += cells[i];
-            count++;
-        }
-    return sum / count;
-}
-
-/* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
- * differ by what blur does beyond the nearest module. The cells that all words share set it right: first by what
- * most data cells and the alignment cells are, then by all cells that are then as the blank word has them. */
-static void level_cells(const float *blank, bool dark, float seen[CELLS])
-{
-    const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
-    const float seen_data = usual_data(seen), blank_data = usual_data(blank);
-    const float seen_step = mean_alignment(seen, rows) - seen_data;
-    const float blank_step = mean_alignment(blank, rows) - blank_data;
-    float gain = seen_step * blank_step > 0 ? real_max(0.7f, real_min(2, blank_step / seen_step)) : 1;
-    float offset = blank_data - gain * seen_data;
-    fit_line(seen, blank, 0.25f, &gain, &offset);
-    for (int i = 0; i < CELLS; i++)
-        seen[i] = gain * seen[i] + offset;
-}
-
-static bool mostly_dark(const tmi_cells *cells)
-{
-    float data = 0;
-    for (int i = 0; i < TAPEMARK_DATA_BITS; i++)
-        data += cells->value[tmi_data_cell[i]];
-    return data > 0.5f * TAPEMARK_DATA_BITS;
-}
-
-static void sum_up(matcher *m, const tmi_cells *cells, const float *blank)
-{
-    for (int i = 0; i < CELLS; i++) {
-        const float seen = cells->value[i];
-        m->seen_sum += seen;
-        m->seen_energy += seen * seen;
-        m->blank_sum += blank[i];
-        m->blank_energy += blank[i] * blank[i];
-        m->seen_blank += seen * blank[i];
-    }
-}
-
-static void prepare(matcher *m, const tmi_cells *cells)
-{
-    float blank[CELLS];
-    const bool dark = mostly_dark(cells);
-    *m = (matcher){.sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
-    overlaps(cells->leak_along, m->along);
-    overlaps(cells->leak_across, m->across);
-    m->last_along = m->along[0] - m->leak_along * m->leak_along;
-    m->first_across = m->across[0] - m->leak_across * m->leak_across;
-    draw_blank(cells, dark, blank);
-    sum_up(m, cells, blank);
-    for (int bit = 0; bit < BITS; bit++)
-        m->bumps[bit] = measure_bump(cells, blank, cell_of(bit));
-}
-
-/* ---- Scores ------------------------------------------------------------------------------------------ */
-
-/* Normalised correlation of the cells seen with the blank word changed in `count` cells. */
-static float correlate(const matcher *m, const uint8_t *changed, unsigned count)
-{
-    float sum = m->blank_sum, energy = m->blank_energy, product = m->seen_blank;
-    for (unsigned i = 0; i < count; i++) {
-        const bump *b = &m->bumps[changed[i]];
-        sum += m->sign * bump_mass(m, changed[i]);
-        energy += bump_energy(m, changed[i]) + 2 * m->sign * b->on_blank;
-        product += m->sign * b->on_seen;
-        for (unsigned j = 0; j < i; j++)
-            energy += 2 * overlap(m, changed[i], changed[j]);
-    }
-    const float n = CELLS;
-    const float covariance = product - sum * m->seen_sum / n;
-    const float variance = (energy - sum * sum / n) * (m->seen_energy - m->seen_sum * m->seen_sum / n);
-    return variance > 1e-6f ? covariance / real_sqrt(variance) : 0;
-}
-
-float tmi_blank_score(tmi_cells *cells)
-{
-    float blank[CELLS];
-    const bool dark = mostly_dark(cells);
-    draw_blank(cells, dark, blank);
-    level_cells(blank, dark, cells->value);
-    matcher sums = {0};
-    sum_up(&sums, cells, blank);
-    return correlate(&sums, NULL, 0);
-}
-
 /* A whole word: its data cells and the checksum that belongs to them. */
-static float score_word(const matcher *m, const candidate *word)
+static float score_word(const tmi_evidence *e, const candidate *word)
 {
     uint8_t changed[TAPEMARK_MAX_ONES + TMI_CHECKSUM_BITS];
     unsigned count = 0;
     for (; count < word->count; count++)
         changed[count] = word->positions[count];
-    const bool negative = m->sign < 0;
+    const bool negative = e->sign < 0;
     const uint8_t checksum = tmi_checksum_of_positions(word->positions, word->count, negative);
     for (int bit = 0; bit < TMI_CHECKSUM_BITS; bit++)
         if ((checksum >> (TMI_CHECKSUM_BITS - 1 - bit) & 1) != negative)
             changed[count++] = (uint8_t)(TAPEMARK_DATA_BITS + bit);
-    return correlate(m, changed, count);
+    return tmi_evidence_correlate(e, changed, count);
 }
 
 /* ---- Candidates -------------------------------------------------------------------------------------- */
 
-static float change_gain(const matcher *m, int bit)
-{
-    const bump *b = &m->bumps[bit];
-    return 2 * m->sign * (b->on_seen - b->on_blank) - bump_energy(m, bit);
-}
-
-/* The data bits whose change explains most, best first. Returns how many there are. */
-static int pick_positions(const matcher *m, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
+/* The data bits of which most is there, best first, each with the squared error that it takes off. Returns how many. */
+static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
-        const float energy = bump_energy(m, i), gain = change_gain(m, i) - one_cost * energy;
+        const float energy = tmi_evidence_energy(e, i), gain = (2 * e->amounts[i] - 1 - one_cost) * energy;
         if (gain < hopeless_gain * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
             continue;
         int at = count < CANDIDATE_CELLS ? count++ : count - 1;
@@ -341,11 +84,11 @@ static void offer(shortlist *list, const candidate *word)
 
 /* All words made of the picked positions, of none to four of them: a walk over the subsets in which each
  * step adds the next position or takes the last one back. */
-static void list_words(const matcher *m, shortlist *list, uint32_t *work)
+static void list_words(const tmi_evidence *e, shortlist *list, uint32_t *work)
 {
     uint8_t picked[CANDIDATE_CELLS];
     float gains[CANDIDATE_CELLS];
-    const int count = pick_positions(m, picked, gains);
+    const int count = pick_positions(e, picked, gains);
     candidate word = {0};
     int chosen[TAPEMARK_MAX_ONES];
     float before[TAPEMARK_MAX_ONES];
@@ -354,13 +97,10 @@ static void list_words(const matcher *m, shortlist *list, uint32_t *work)
     offer(list, &word);
     for (;;) {
         if (word.count < TAPEMARK_MAX_ONES && next < count) {
-            float gain = gains[next];
-            for (int i = 0; i < word.count; i++)
-                gain -= 2 * overlap(m, picked[next], word.positions[i]);
             chosen[word.count] = next;
             before[word.count] = word.gain;
+            word.gain += gains[next];
             word.positions[word.count++] = picked[next++];
-            word.gain += gain;
             offer(list, &word);
             ++*work;
         } else if (word.count > 0) {
@@ -394,19 +134,19 @@ static bool is_known(const tmi_words *words, int32_t id)
 static const float odds_max = 4;
 
 typedef struct contest {
-    const matcher *m;
+    const tmi_evidence *e;
     float variance;     /* of the cells seen, times their number */
     float blank_error;  /* squared error of the blank word */
     float checksum_max; /* the most that any checksum can take off it */
     float best;         /* score of the best word so far */
 } contest;
 
-static void begin_contest(contest *c, const matcher *m)
+static void begin_contest(contest *c, const tmi_evidence *e)
 {
-    *c = (contest){.m = m, .variance = m->seen_energy - m->seen_sum * m->seen_sum / CELLS,
-                   .blank_error = m->seen_energy - 2 * m->seen_blank + m->blank_energy, .best = -1};
-    for (int bit = TAPEMARK_DATA_BITS; bit < BITS; bit++)
-        c->checksum_max += real_max(0, change_gain(m, bit));
+    *c = (contest){.e = e, .variance = e->seen_energy - e->seen_sum * e->seen_sum / CELLS,
+                   .blank_error = e->seen_energy - 2 * e->seen_blank + e->blank_energy, .best = -1};
+    for (int bit = TAPEMARK_DATA_BITS; bit < TMI_BITS; bit++)
+        c->checksum_max += real_max(0, tmi_evidence_gain(e, bit));
 }
 
 static float unexplained(float score)
@@ -418,9 +158,12 @@ static float unexplained(float score)
  * costs more than all the rest, need not be computed. */
 static bool in_reach(const contest *c, const candidate *word)
 {
-    float least_error = c->blank_error - word->gain - c->checksum_max;
-    for (int i = 0; i < word->count; i++)
-        least_error -= one_cost * bump_energy(c->m, word->positions[i]);
+    float least_error = c->blank_error - c->checksum_max;
+    for (int i = 0; i < word->count; i++) {
+        least_error -= tmi_evidence_gain(c->e, word->positions[i]);
+        for (int j = 0; j < i; j++)
+            least_error += 2 * tmi_evidence_overlap(c->e, word->positions[i], word->positions[j]);
+    }
     return least_error < (odds_max * unexplained(c->best) + 0.02f) * c->variance;
 }
 
@@ -466,22 +209,22 @@ static void best_two(const float *scores, const int32_t *ids, int count, const t
 
 void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading, uint32_t *work)
 {
-    matcher m;
+    tmi_evidence e;
     shortlist list;
-    prepare(&m, cells);
-    list_words(&m, &list, work);
+    tmi_evidence_gather(&e, cells);
+    list_words(&e, &list, work);
     *work += PREPARE_WORK;
     contest c;
-    begin_contest(&c, &m);
+    begin_contest(&c, &e);
     float scores[CANDIDATE_WORDS];
     int32_t ids[CANDIDATE_WORDS];
     int count = 0;
     for (int i = 0; i < list.count; i++) {
         const candidate *word = &list.words[i];
-        const int32_t id = tmi_id_of_positions(word->positions, word->count, m.sign < 0);
+        const int32_t id = tmi_id_of_positions(word->positions, word->count, e.sign < 0);
         if (id == TMI_NO_ID || id > words->id_max || id < -words->id_max || !in_reach(&c, word))
             continue;
-        scores[count] = score_word(&m, word);
+        scores[count] = score_word(&e, word);
         *work += SCORE_WORK;
         c.best = real_max(c.best, scores[count]);
         ids[count++] = id;

@@ -2,14 +2,7 @@
 #ifndef TAPEMARK_WORD_H
 #define TAPEMARK_WORD_H
 
-#include "tapemark.h"
-
-/* The coding region as sampled: 0 is light, 1 is dark, and anything near that may occur. */
-typedef struct tmi_cells {
-    float value[TAPEMARK_CELLS];
-    /* What each module gives to its next one along the tape and across it: the blur, in modules. */
-    float leak_along, leak_across;
-} tmi_cells;
+#include "evidence.h"
 
 typedef struct tmi_reading {
     int32_t id;          /* TMI_NO_ID: nothing fits */
@@ -32,13 +25,6 @@ typedef struct tmi_words {
     const int32_t *known_ids;
     size_t known_id_count;
 } tmi_words;
-
-/* Turns the cells by half a turn: as seen by a reader who stands on the head. */
-void tmi_cells_turn(tmi_cells *cells);
-
-/* Correlation with what all words share, a quick measure of whether this way up is the right one. Adjusts the
- * scale of the cells to it. */
-float tmi_blank_score(tmi_cells *cells);
 
 /* The word of at most four ones (or zeros, where most cells are dark) that fits best, for cells whose scale
  * tmi_blank_score() has adjusted. `work` grows by what it costs, in pixel reads. */

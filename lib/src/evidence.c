@@ -1,0 +1,291 @@
+#include "evidence.h"
+
+#include "real.h"
+
+/*
+ * How a word is scored. The print is blurred: a dark module also darkens its neighbours. With leaks a (along)
+ * and c (across) a single dark module is seen as the bump [c, 1 - 2c, c]' * [a, 1 - 2a, a]. The expected cells of
+ * a word are those of a blank one (no ones, checksum cells all 0) plus one bump for each cell that differs, so
+ * that sums over 112 cells are needed once, and each word costs only as much as it has cells that differ.
+ */
+
+enum {
+    ROWS = TAPEMARK_CELL_ROWS,
+    COLUMNS = TAPEMARK_CELL_COLUMNS,
+    CELLS = TAPEMARK_CELLS,
+    BITS = TMI_BITS
+};
+
+/* The 86 cells that a word decides are numbered as bits: its data first, then its checksum. */
+static int cell_of(int bit)
+{
+    return bit < TAPEMARK_DATA_BITS ? tmi_data_cell[bit] : tmi_checksum_cell[bit - TAPEMARK_DATA_BITS];
+}
+
+/* Sum of both leaks from which neighbours are told apart one by one. */
+static const float strong_blur = 0.2f;
+
+void tmi_cells_turn(tmi_cells *cells)
+{
+    for (int i = 0; i < CELLS / 2; i++) {
+        const float kept = cells->value[i];
+        cells->value[i] = cells->value[CELLS - 1 - i];
+        cells->value[CELLS - 1 - i] = kept;
+    }
+}
+
+/* ---- Expected cells --------------------------------------------------------------------------------- */
+
+/* One row of modules, blurred along the tape. Beside the coding region there is a light module. */
+static float blurred_along(uint32_t row, int column, float leak)
+{
+    const uint32_t bits = row << 1;
+    const uint32_t left = bits >> (17 - column) & 1, here = bits >> (16 - column) & 1, right = bits >> (15 - column) & 1;
+    return (1 - 2 * leak) * (float)here + leak * (float)(left + right);
+}
+
+/* The blank word, blurred. Above and below the coding region there is a light row. */
+static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
+{
+    uint32_t rows[ROWS + 2] = {0};
+    for (int row = 0; row < ROWS; row++)
+        rows[row + 1] = dark ? 0xffffu & ~(uint32_t)tmi_light_rows[row] : tmi_dark_rows[row];
+    const float a = cells->leak_along, c = cells->leak_across;
+    for (int i = 0; i < CELLS; i++) {
+        const uint32_t *row = &rows[i / COLUMNS];
+        const int column = i % COLUMNS;
+        out[i] = c * (blurred_along(row[0], column, a) + blurred_along(row[2], column, a)) +
+                 (1 - 2 * c) * blurred_along(row[1], column, a);
+    }
+}
+
+static tmi_bump measure_bump(const tmi_cells *cells, const float *blank, int cell)
+{
+    const float along[3] = {cells->leak_along, 1 - 2 * cells->leak_along, cells->leak_along};
+    const float across[3] = {cells->leak_across, 1 - 2 * cells->leak_across, cells->leak_across};
+    const int row = cell / COLUMNS, column = cell % COLUMNS;
+    tmi_bump out = {0};
+    for (int dy = row > 0 ? -1 : 0; dy <= (row < ROWS - 1 ? 1 : 0); dy++)
+        for (int dx = column > 0 ? -1 : 0; dx <= (column < COLUMNS - 1 ? 1 : 0); dx++) {
+            const float w = along[dx + 1] * across[dy + 1];
+            const int i = cell + dy * COLUMNS + dx;
+            out.on_seen += w * cells->value[i];
+            out.on_blank += w * blank[i];
+        }
+    return out;
+}
+
+/* The bits' cells lie in columns 1 to 15 and rows 0 to 5: bumps can lose their right and their upper side. */
+static bool at_right(int bit)
+{
+    return cell_of(bit) % COLUMNS == COLUMNS - 1;
+}
+
+static bool at_top(int bit)
+{
+    return cell_of(bit) < COLUMNS;
+}
+
+static float bump_mass(const tmi_evidence *e, int bit)
+{
+    return (at_right(bit) ? 1 - e->leak_along : 1) * (at_top(bit) ? 1 - e->leak_across : 1);
+}
+
+float tmi_evidence_energy(const tmi_evidence *e, int bit)
+{
+    return (at_right(bit) ? e->last_along : e->along[0]) * (at_top(bit) ? e->first_across : e->across[0]);
+}
+
+static void overlaps(float leak, float out[3])
+{
+    const float middle = 1 - 2 * leak;
+    out[0] = middle * middle + 2 * leak * leak;
+    out[1] = 2 * leak * middle;
+    out[2] = leak * leak;
+}
+
+float tmi_evidence_overlap(const tmi_evidence *e, int bit, int other_bit)
+{
+    const int cell = cell_of(bit), other = cell_of(other_bit);
+    const int rows = cell / COLUMNS - other / COLUMNS, columns = cell % COLUMNS - other % COLUMNS;
+    if (rows < -2 || rows > 2 || columns < -2 || columns > 2)
+        return 0;
+    return e->across[rows < 0 ? -rows : rows] * e->along[columns < 0 ? -columns : columns];
+}
+
+/* Straight line that takes the cells seen nearest to the blank word's, over those within `reach` of it. */
+static void fit_line(const float *seen, const float *blank, float reach, float *gain, float *offset)
+{
+    float n = 0, x = 0, y = 0, xx = 0, xy = 0;
+    for (int i = 0; i < CELLS; i++) {
+        if (real_abs(*gain * seen[i] + *offset - blank[i]) > reach)
+            continue;
+        n++;
+        x += seen[i];
+        y += blank[i];
+        xx += seen[i] * seen[i];
+        xy += seen[i] * blank[i];
+    }
+    const float variance = n * xx - x * x;
+    if (!(variance > 1e-4f * n * n))
+        return;
+    *gain = real_max(0.7f, real_min(2, (n * xy - x * y) / variance));
+    *offset = (y - *gain * x) / n;
+}
+
+/* What most data cells are: their mean, then again without those far from it, which are ones or zeros. */
+static float usual_data(const float *cells)
+{
+    float usual = 0.5f, reach = 10;
+    for (int pass = 0; pass < 3; pass++, reach = 0.25f) {
+        float sum = 0, count = 0;
+        for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
+            const float value = cells[tmi_data_cell[i]];
+            if (real_abs(value - usual) > reach)
+                continue;
+            sum += value;
+            count++;
+        }
+        if (count > 0)
+            usual = sum / count;
+    }
+    return usual;
+}
+
+/* Mean of the alignment cells that differ from most data cells: dark ones in light words, else light ones. */
+static float mean_alignment(const float *cells, const uint16_t rows[ROWS])
+{
+    float sum = 0, count = 0;
+    for (int i = 0; i < CELLS; i++)
+        if (rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1) {
+            sum += cells[i];
+            count++;
+        }
+    return sum / count;
+}
+
+/* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
+ * differ by what blur does beyond the nearest module. The cells that all words share set it right: first by what
+ * most data cells and the alignment cells are, then by all cells that are then as the blank word has them. */
+static void level_cells(const float *blank, bool dark, float seen[CELLS])
+{
+    const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
+    const float seen_data = usual_data(seen), blank_data = usual_data(blank);
+    const float seen_step = mean_alignment(seen, rows) - seen_data;
+    const float blank_step = mean_alignment(blank, rows) - blank_data;
+    float gain = seen_step * blank_step > 0 ? real_max(0.7f, real_min(2, blank_step / seen_step)) : 1;
+    float offset = blank_data - gain * seen_data;
+    fit_line(seen, blank, 0.25f, &gain, &offset);
+    for (int i = 0; i < CELLS; i++)
+        seen[i] = gain * seen[i] + offset;
+}
+
+static bool mostly_dark(const tmi_cells *cells)
+{
+    float data = 0;
+    for (int i = 0; i < TAPEMARK_DATA_BITS; i++)
+        data += cells->value[tmi_data_cell[i]];
+    return data > 0.5f * TAPEMARK_DATA_BITS;
+}
+
+static void sum_up(tmi_evidence *e, const tmi_cells *cells, const float *blank)
+{
+    for (int i = 0; i < CELLS; i++) {
+        const float seen = cells->value[i];
+        e->seen_sum += seen;
+        e->seen_energy += seen * seen;
+        e->blank_sum += blank[i];
+        e->blank_energy += blank[i] * blank[i];
+        e->seen_blank += seen * blank[i];
+    }
+}
+
+/* Adds `amount` of a bit's bump to the cells, and returns the sum of the bump's product with them as they were. */
+static float touch_bump(const tmi_evidence *e, int bit, float amount, float cells[CELLS])
+{
+    const float along[3] = {e->leak_along, 1 - 2 * e->leak_along, e->leak_along};
+    const float across[3] = {e->leak_across, 1 - 2 * e->leak_across, e->leak_across};
+    const int cell = cell_of(bit), row = cell / COLUMNS, column = cell % COLUMNS;
+    float product = 0;
+    for (int dy = row > 0 ? -1 : 0; dy <= 1; dy++) /* no bit lies in the last row or the first column */
+        for (int dx = -1; dx <= (column < COLUMNS - 1 ? 1 : 0); dx++) {
+            const float w = along[dx + 1] * across[dy + 1];
+            product += w * cells[cell + dy * COLUMNS + dx];
+            cells[cell + dy * COLUMNS + dx] += amount * w;
+        }
+    return product;
+}
+
+/* How much of each bit is there, 0 to 1: the amounts of all bumps that together come nearest to what the cells show
+ * beyond the blank word, by coordinate descent. What a one leaks into its neighbours is thus not counted for them. */
+static void amounts_of_bits(const tmi_evidence *e, const tmi_cells *cells, const float blank[CELLS], float amount[BITS])
+{
+    float left[CELLS];
+    for (int i = 0; i < CELLS; i++)
+        left[i] = e->sign * (cells->value[i] - blank[i]);
+    for (int bit = 0; bit < BITS; bit++)
+        amount[bit] = 0;
+    const int sweeps = e->leak_along + e->leak_across > strong_blur ? 10 : 2;
+    for (int sweep = 0; sweep < sweeps; sweep++)
+        for (int bit = 0; bit < BITS; bit++) {
+            const float wanted = amount[bit] + touch_bump(e, bit, 0, left) / tmi_evidence_energy(e, bit);
+            const float next = real_max(0, real_min(1, wanted)), change = next - amount[bit];
+            if (change == 0)
+                continue;
+            touch_bump(e, bit, -change, left);
+            amount[bit] = next;
+        }
+}
+
+void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells)
+{
+    float blank[CELLS];
+    const bool dark = mostly_dark(cells);
+    *e = (tmi_evidence){.sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
+    overlaps(cells->leak_along, e->along);
+    overlaps(cells->leak_across, e->across);
+    e->last_along = e->along[0] - e->leak_along * e->leak_along;
+    e->first_across = e->across[0] - e->leak_across * e->leak_across;
+    draw_blank(cells, dark, blank);
+    sum_up(e, cells, blank);
+    for (int bit = 0; bit < BITS; bit++)
+        e->bumps[bit] = measure_bump(cells, blank, cell_of(bit));
+    amounts_of_bits(e, cells, blank, e->amounts);
+}
+
+/* ---- Scores ------------------------------------------------------------------------------------------ */
+
+/* Normalised correlation of the cells seen with the blank word changed in `count` cells. */
+float tmi_evidence_correlate(const tmi_evidence *e, const uint8_t *changed, unsigned count)
+{
+    float sum = e->blank_sum, energy = e->blank_energy, product = e->seen_blank;
+    for (unsigned i = 0; i < count; i++) {
+        const tmi_bump *b = &e->bumps[changed[i]];
+        sum += e->sign * bump_mass(e, changed[i]);
+        energy += tmi_evidence_energy(e, changed[i]) + 2 * e->sign * b->on_blank;
+        product += e->sign * b->on_seen;
+        for (unsigned j = 0; j < i; j++)
+            energy += 2 * tmi_evidence_overlap(e, changed[i], changed[j]);
+    }
+    const float n = CELLS;
+    const float covariance = product - sum * e->seen_sum / n;
+    const float variance = (energy - sum * sum / n) * (e->seen_energy - e->seen_sum * e->seen_sum / n);
+    return variance > 1e-6f ? covariance / real_sqrt(variance) : 0;
+}
+
+float tmi_evidence_gain(const tmi_evidence *e, int bit)
+{
+    const tmi_bump *b = &e->bumps[bit];
+    return 2 * e->sign * (b->on_seen - b->on_blank) - tmi_evidence_energy(e, bit);
+}
+
+float tmi_blank_score(tmi_cells *cells)
+{
+    float blank[CELLS];
+    const bool dark = mostly_dark(cells);
+    draw_blank(cells, dark, blank);
+    level_cells(blank, dark, cells->value);
+    tmi_evidence sums = {0};
+    sum_up(&sums, cells, blank);
+    return tmi_evidence_correlate(&sums, NULL, 0);
+}
