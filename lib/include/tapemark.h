@@ -1,9 +1,10 @@
 /*
  * Tapemark: reads tape-shaped fiducial markers in 8-bit gray images.
  *
- * The whole library promises: no heap, no mutable globals, no I/O, no recursion, no dependency beyond
- * mem* functions; stack frames below 2 KiB; work bounded by a budget the caller may set. Every function
- * is reentrant: two threads may decode at once, each with its own workspace and result.
+ * The whole library promises: no heap, no mutable globals, no I/O, no recursion, no dependency beyond mem* functions
+ * (and, on processors without such an instruction, sqrtf); stack frames below 2 KiB; work bounded by a budget the
+ * caller may set. Every function is reentrant: two threads may decode at once, each with its own workspace and
+ * result.
  *
  * A first decode, with everything static:
  *
@@ -140,15 +141,16 @@ typedef struct tapemark_config {
     uint8_t contrast_min;
     /* Least confidence of a reported CM, 0 to 1. 0: the built-in rule alone decides. */
     float confidence_min;
-    /* Largest |id| in use: fewer possible words make readings surer. 0: TAPEMARK_MAX_ID. */
+    /* Largest |id| in use; no other id is reported. 0: TAPEMARK_MAX_ID. */
     int32_t id_max;
-    /* The ids that are in use, in ascending order without repetition; borrowed for the call. Where given, no
-     * other id is reported. NULL with count 0: every id up to id_max. */
+    /* The ids that are in use, in ascending order without repetition, which each call checks; borrowed for the
+     * call. Where given, no other id is reported, and they decide between words that fit about as well.
+     * NULL with count 0: every id up to id_max. */
     const int32_t *known_ids;
     size_t known_id_count;
     /* Work allowed after the first pass over the image, in pixel reads (of some 100 instructions, all told). It
-     * bounds the time of the worst frame: what is underway when it is spent, at most one CM or TM, is ended, and
-     * each CM that was read adds 2500, so that only work in vain counts. 0: tapemark_default_work_budget(). */
+     * bounds the time of the worst frame: what is underway when it is spent, a CM or a TM, is ended, and each CM
+     * that was read adds 2500, so that only work in vain counts. 0: tapemark_default_work_budget(). */
     uint32_t work_budget;
 } tapemark_config;
 
@@ -186,8 +188,8 @@ typedef struct tapemark_tm {
 /* A finder pattern that was located, for pictures of what the decoder saw. */
 typedef struct tapemark_finder {
     tapemark_point centre;
-    tapemark_point along;   /* one module along the tape, as a vector; whichever side where not yet known */
-    tapemark_point across;  /* one module across it */
+    tapemark_point along;   /* one module along one of its sides, as a vector; whether that side lies along */
+    tapemark_point across;  /* the tape, the pattern itself does not tell; and one module along the other side */
     float score;            /* correlation with the ideal pattern, -1 to 1 */
 } tapemark_finder;
 
@@ -195,11 +197,11 @@ typedef struct tapemark_finder {
 typedef enum tapemark_reject {
     TAPEMARK_REJECT_SHAPE,       /* finder pattern: rings missing around it, or no square's shape */
     TAPEMARK_REJECT_LONE,        /* finder pattern: no other one at the distance of a CM */
-    TAPEMARK_REJECT_ALIGNMENT,   /* CM: alignment cells do not stand out */
-    TAPEMARK_REJECT_SCORE,       /* CM: no code word fits well enough */
+    TAPEMARK_REJECT_ALIGNMENT,   /* CM: which way is up does not stand out, or it leaves the image */
+    TAPEMARK_REJECT_SCORE,       /* CM: no code word fits well enough, or with too little confidence */
     TAPEMARK_REJECT_MARGIN,      /* CM: two code words fit about as well */
-    TAPEMARK_REJECT_UNKNOWN_ID,  /* CM: the word read is not among the known ids */
-    TAPEMARK_REJECT_CONFLICT,    /* CM: disagrees with the segment that it is part of */
+    TAPEMARK_REJECT_UNKNOWN_ID,  /* CM: the word read is not among the known ids, or beyond id_max */
+    TAPEMARK_REJECT_CONFLICT,    /* CM or TM: it and the CMs of its segment contradict each other */
     TAPEMARK_REJECT_BARS,        /* TM: bars missing at an end (cut by the border, covered, or no TM) */
     TAPEMARK_REJECT_VOTE,        /* TM: too few scan lines agree */
     TAPEMARK_REJECT_COUNT
@@ -207,7 +209,7 @@ typedef enum tapemark_reject {
 
 /* Bits of tapemark_stats.limits: each names a bound that cut the work short in this frame. */
 enum {
-    TAPEMARK_LIMIT_SCAN = 1,        /* too much texture: scan lines were spread further apart */
+    TAPEMARK_LIMIT_SCAN = 1,        /* too much texture: scan lines spread further apart, weakest parts left out */
     TAPEMARK_LIMIT_WORK = 2,        /* the work budget was spent */
     TAPEMARK_LIMIT_CANDIDATES = 4,  /* more finder patterns than the workspace holds */
     TAPEMARK_LIMIT_CMS = 8,         /* more CMs than result.cm_capacity */
@@ -225,10 +227,12 @@ typedef struct tapemark_stats {
     uint32_t finders;            /* finder patterns located */
     uint32_t segments;           /* rows of two or more of them */
     uint32_t cms_tried;          /* pairs of neighbours looked at as a CM */
+    uint32_t cms_read;           /* of those, CMs that were believed, whether or not there was room for them */
     uint32_t rejects[TAPEMARK_REJECT_COUNT];
 } tapemark_stats;
 
-/* The caller owns the arrays; capacities may be 0 (with a NULL pointer) for kinds that are not wanted.
+/* The caller owns the arrays; capacities may be 0 (with a NULL pointer) for kinds that are not wanted: that is no
+ * lack of room. Without room for TMs, CMs have no tm and slot. Finders beyond their capacity are left out silently.
  * A call sets the counts and `stats` and leaves entries beyond the counts undefined. */
 typedef struct tapemark_result {
     tapemark_cm *cms;

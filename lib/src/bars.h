@@ -5,9 +5,9 @@
 #include "segment.h"
 
 typedef struct tmi_tm_reading {
-    uint32_t code;  /* the first CM's bit highest */
-    float vote;     /* share of the lines with bars at both ends that agree on the code */
-    float bars;     /* correlation of the weaker end with ideal bars */
+    uint32_t code; /* the first CM's bit highest */
+    float vote;    /* share of the lines with bars at both ends that agree on the code */
+    float bars;    /* correlation of the weaker end with ideal bars */
 } tmi_tm_reading;
 
 /* Where bars may be: beside a finder, whose centre is at u by the map, to the right or to the left. */

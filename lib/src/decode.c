@@ -5,11 +5,10 @@
 #include "tiles.h"
 
 /* Scan lines, across and down, are this far apart. A finder pattern of one pixel a module has a core of three, so
- * that a few are missed at that size; their neighbours on the tape foretell them. The lines are visited in passes
- * this far apart, so that where the work runs out it has been spread evenly over the image. */
-enum { LINE_SPACING = 4, PASS_SPACING = 16, PASSES = PASS_SPACING / LINE_SPACING };
+ * that a few are missed at that size; their neighbours on the tape foretell them. */
+enum { LINE_SPACING = 4 };
 
-/* Pixels that are read in a tile by all passes over rows and columns. */
+/* Pixels that are read in a tile by all its rows and columns. */
 enum { TILE_WORK = 2 * TAPEMARK_TILE_PX * TAPEMARK_TILE_PX / LINE_SPACING };
 
 /* Parts of the work budget up to which lines are scanned, finder patterns tried and missing ones looked for; what
@@ -82,43 +81,70 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
 static tmi_scan row_of(const tmi_view *view, const tmi_tiles *tiles, int32_t y)
 {
     const int32_t tile = y / TAPEMARK_TILE_PX;
-    return (tmi_scan){view->pixels + y * view->stride, 1, view->width, y, view->invert,
-                      tiles->swing + tile * tiles->pitch, 1,
-                      tiles->row_bits + tile * tiles->row_words, tiles->row_words};
+    return (tmi_scan){view->pixels + y * view->stride,
+                      1,
+                      view->width,
+                      y,
+                      view->invert,
+                      tiles->swing + tile * tiles->pitch,
+                      1,
+                      tiles->row_bits + tile * tiles->row_words,
+                      tiles->row_words};
 }
 
 static tmi_scan column_of(const tmi_view *view, const tmi_tiles *tiles, int32_t x)
 {
     const int32_t tile = x / TAPEMARK_TILE_PX;
-    return (tmi_scan){view->pixels + x, view->stride, view->height, x, view->invert,
-                      tiles->swing + tile, tiles->pitch,
-                      tiles->column_bits + tile * tiles->column_words, tiles->column_words};
+    return (tmi_scan){
+        view->pixels + x,   view->stride,        view->height, x,
+        view->invert,       tiles->swing + tile, tiles->pitch, tiles->column_bits + tile * tiles->column_words,
+        tiles->column_words};
 }
 
-/* One pass over rows (or columns) that lie PASS_SPACING apart. False once the work for scanning is spent. */
-static bool scan_pass(seeker *s, const tmi_tiles *tiles, int32_t first, uint32_t work_max)
+/* The k-th of 2^bits numbers in an order in which any first part of them lies evenly spread. */
+static int32_t spread(int32_t k, int bits)
+{
+    int32_t reversed = 0;
+    for (int i = 0; i < bits; i++)
+        reversed |= (k >> i & 1) << (bits - 1 - i);
+    return reversed;
+}
+
+static int bits_for(int32_t count)
+{
+    int bits = 0;
+    while (1 << bits < count)
+        bits++;
+    return bits;
+}
+
+/* The k-th row or column in spread order, if there is one. */
+static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t k, int bits)
 {
     const tmi_view *view = s->tape->view;
-    tapemark_stats *stats = s->tape->stats;
-    const int32_t lines = s->vertical ? view->width : view->height;
-    for (int32_t line = first; line < lines; line += PASS_SPACING) {
-        if (stats->work >= work_max)
-            return false;
-        const tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
-        stats->work += (uint32_t)tmi_scan_line(&scan, try_hit, s);
-    }
-    return true;
+    const int32_t line = 1 + LINE_SPACING * spread(k, bits);
+    if (k >> bits || line >= (s->vertical ? view->width : view->height))
+        return;
+    const tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
+    s->tape->stats->work += (uint32_t)tmi_scan_line(&scan, try_hit, s);
 }
 
+/* Rows and columns in turn, from a coarse grid over the whole image to a fine one: where the work runs out, it has
+ * been spread evenly. */
 static void scan_lines(tmi_tape *tape, const tmi_tiles *tiles, uint32_t work_max)
 {
-    static const int32_t first[PASSES] = {1, 9, 5, 13};
     seeker rows = {tape, false}, columns = {tape, true};
-    for (int pass = 0; pass < PASSES; pass++)
-        if (!scan_pass(&rows, tiles, first[pass], work_max) || !scan_pass(&columns, tiles, first[pass], work_max)) {
+    const int row_bits = bits_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
+    const int column_bits = bits_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
+    const int32_t steps = 1 << (row_bits > column_bits ? row_bits : column_bits);
+    for (int32_t k = 0; k < steps; k++) {
+        if (tape->stats->work >= work_max) {
             tape->stats->limits |= TAPEMARK_LIMIT_SCAN;
             return;
         }
+        scan_one(&rows, tiles, k, row_bits);
+        scan_one(&columns, tiles, k, column_bits);
+    }
 }
 
 /* ---- The call ------------------------------------------------------------------------------------------------- */
@@ -146,9 +172,9 @@ static bool ids_ascend(const int32_t *ids, size_t count)
 /* Comparisons are written so that a NaN fails them. */
 static bool config_is_valid(const tapemark_config *c)
 {
-    return (c->vote_min == 0 || (c->vote_min > 0.5f && c->vote_min <= 1)) && c->roll_deg >= -360 && c->roll_deg <= 360 &&
-           (c->polarity == TAPEMARK_DARK_ON_LIGHT || c->polarity == TAPEMARK_LIGHT_ON_DARK) && c->confidence_min >= 0 &&
-           c->confidence_min <= 1 && c->id_max >= 0 && c->id_max <= TAPEMARK_MAX_ID &&
+    return (c->vote_min == 0 || (c->vote_min > 0.5f && c->vote_min <= 1)) && c->roll_deg >= -360 &&
+           c->roll_deg <= 360 && (c->polarity == TAPEMARK_DARK_ON_LIGHT || c->polarity == TAPEMARK_LIGHT_ON_DARK) &&
+           c->confidence_min >= 0 && c->confidence_min <= 1 && c->id_max >= 0 && c->id_max <= TAPEMARK_MAX_ID &&
            (c->known_ids || !c->known_id_count) && ids_ascend(c->known_ids, c->known_id_count);
 }
 
@@ -169,7 +195,7 @@ static tapemark_config with_defaults(const tapemark_config *config, const tapema
 static tmi_view view_of(const tapemark_image *image, tapemark_polarity polarity)
 {
     const bool inverted = polarity == TAPEMARK_LIGHT_ON_DARK;
-    return (tmi_view){image->pixels, image->width_px, image->height_px, image->stride_bytes,
+    return (tmi_view){image->pixels,      image->width_px,         image->height_px,        image->stride_bytes,
                       inverted ? 255 : 0, inverted ? -1.0f : 1.0f, inverted ? 255.0f : 0.0f};
 }
 
@@ -215,8 +241,8 @@ static tapemark_status status_of(const tapemark_result *result)
     return result->stats.limits ? TAPEMARK_UNFINISHED : TAPEMARK_NOTHING_FOUND;
 }
 
-tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config,
-                                void *memory, size_t workspace_size, tapemark_result *result)
+tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config, void *memory,
+                                size_t workspace_size, tapemark_result *result)
 {
     static const tapemark_config defaults = {0};
     if (!result_is_valid(result))
@@ -239,7 +265,9 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     find_tapes(w, &view, &settings, &result->stats);
     report_finders(&w->tape, result);
 
-    const tmi_reader reader = {.view = &view, .config = &settings, .result = result,
+    const tmi_reader reader = {.view = &view,
+                               .config = &settings,
+                               .result = result,
                                .words = {settings.id_max, settings.known_ids, settings.known_id_count},
                                .upright = real_direction(settings.roll_deg)};
     int next = 0, finders;

@@ -9,12 +9,7 @@
  * that sums over 112 cells are needed once, and each word costs only as much as it has cells that differ.
  */
 
-enum {
-    ROWS = TAPEMARK_CELL_ROWS,
-    COLUMNS = TAPEMARK_CELL_COLUMNS,
-    CELLS = TAPEMARK_CELLS,
-    BITS = TMI_BITS
-};
+enum { ROWS = TAPEMARK_CELL_ROWS, COLUMNS = TAPEMARK_CELL_COLUMNS, CELLS = TAPEMARK_CELLS, BITS = TMI_BITS };
 
 /* The 86 cells that a word decides are numbered as bits: its data first, then its checksum. */
 static int cell_of(int bit)
@@ -40,7 +35,8 @@ void tmi_cells_turn(tmi_cells *cells)
 static float blurred_along(uint32_t row, int column, float leak)
 {
     const uint32_t bits = row << 1;
-    const uint32_t left = bits >> (17 - column) & 1, here = bits >> (16 - column) & 1, right = bits >> (15 - column) & 1;
+    const uint32_t left = bits >> (17 - column) & 1, here = bits >> (16 - column) & 1,
+                   right = bits >> (15 - column) & 1;
     return (1 - 2 * leak) * (float)here + leak * (float)(left + right);
 }
 
@@ -218,7 +214,8 @@ static float touch_bump(const tmi_evidence *e, int bit, float amount, float cell
 
 /* How much of each bit is there, 0 to 1: the amounts of all bumps that together come nearest to what the cells show
  * beyond the blank word, by coordinate descent. What a one leaks into its neighbours is thus not counted for them. */
-static void amounts_of_bits(const tmi_evidence *e, const tmi_cells *cells, const float blank[CELLS], float amount[BITS])
+static void amounts_of_bits(const tmi_evidence *e, const tmi_cells *cells, const float blank[CELLS],
+                            float amount[BITS])
 {
     float left[CELLS];
     for (int i = 0; i < CELLS; i++)
@@ -241,7 +238,8 @@ void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells)
 {
     float blank[CELLS];
     const bool dark = mostly_dark(cells);
-    *e = (tmi_evidence){.sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
+    *e = (tmi_evidence){
+        .sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
     overlaps(cells->leak_along, e->along);
     overlaps(cells->leak_across, e->across);
     e->last_along = e->along[0] - e->leak_along * e->leak_along;

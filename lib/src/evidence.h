@@ -32,13 +32,13 @@ typedef struct tmi_bump {
 } tmi_bump;
 
 typedef struct tmi_evidence {
-    float along[3], across[3];         /* overlap of two bumps that many cells apart */
-    float last_along, first_across;    /* of a bump with itself where the region's edge cuts it off */
+    float along[3], across[3];      /* overlap of two bumps that many cells apart */
+    float last_along, first_across; /* of a bump with itself where the region's edge cuts it off */
     float leak_along, leak_across;
-    float sign;                        /* +1: ones are dark on light; -1: zeros are light on dark */
+    float sign; /* +1: ones are dark on light; -1: zeros are light on dark */
     float seen_sum, seen_energy, blank_sum, blank_energy, seen_blank;
     tmi_bump bumps[TMI_BITS];
-    float amounts[TMI_BITS];           /* how much of each bit is there, 0 to 1 */
+    float amounts[TMI_BITS]; /* how much of each bit is there, 0 to 1 */
 } tmi_evidence;
 
 /* From cells whose scale tmi_blank_score() has adjusted. */

@@ -8,10 +8,10 @@
 enum { RAYS = 16, RAY_SAMPLES = 72, MISSING_MAX = 5 };
 
 static const tmi_point ray_direction[RAYS] = {
-    {1, 0}, {.923880f, .382683f}, {.707107f, .707107f}, {.382683f, .923880f},
-    {0, 1}, {-.382683f, .923880f}, {-.707107f, .707107f}, {-.923880f, .382683f},
+    {1, 0},  {.923880f, .382683f},   {.707107f, .707107f},   {.382683f, .923880f},
+    {0, 1},  {-.382683f, .923880f},  {-.707107f, .707107f},  {-.923880f, .382683f},
     {-1, 0}, {-.923880f, -.382683f}, {-.707107f, -.707107f}, {-.382683f, -.923880f},
-    {0, -1}, {.382683f, -.923880f}, {.707107f, -.707107f}, {.923880f, -.382683f},
+    {0, -1}, {.382683f, -.923880f},  {.707107f, -.707107f},  {.923880f, -.382683f},
 };
 
 typedef struct ray_walk {
@@ -40,8 +40,8 @@ static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
     float edge[3];
     int i = 0;
     for (; i < RAY_SAMPLES && found < 4; i++) {
-        const float v = walk->value[i] = tmi_sample(walk->view, walk->start.x + (float)i * walk->step.x,
-                                                    walk->start.y + (float)i * walk->step.y);
+        const float v = walk->value[i] =
+            tmi_sample(walk->view, walk->start.x + (float)i * walk->step.x, walk->start.y + (float)i * walk->step.y);
         const bool seeking_light = found & 1;
         if (seeking_light ? v >= walk->value[at] : v <= walk->value[at])
             at = i;
@@ -143,8 +143,8 @@ static bool close_outline(float reach[RAYS], outline *out)
 }
 
 typedef struct moments {
-    float x, y;        /* centroid */
-    float xx, xy, yy;  /* covariance */
+    float x, y;       /* centroid */
+    float xx, xy, yy; /* covariance */
 } moments;
 
 /* Area moments of the outline as a polygon. They follow an affine map exactly, so that a sheared square can be
@@ -309,12 +309,6 @@ static bool fit_step(const tmi_view *view, tmi_finder *f, float span, float *mov
 
 /* ---- Score --------------------------------------------------------------------------------------------- */
 
-static int ring_of(int u, int v)
-{
-    const int a = u < 0 ? -u : u, b = v < 0 ? -v : v;
-    return a > b ? a : b;
-}
-
 /* Correlation of samples at all (u, v) made of `count` coordinates with the ideal pattern. */
 static void score_raster(const tmi_view *view, tmi_finder *finder, const int8_t *coordinates, int count,
                          uint32_t *reads)
@@ -323,11 +317,11 @@ static void score_raster(const tmi_view *view, tmi_finder *finder, const int8_t 
     int darks = 0, lights = 0;
     for (int j = 0; j < count; j++)
         for (int i = 0; i < count; i++) {
-            const int u = coordinates[i], v = coordinates[j], ring = ring_of(u, v);
+            const int u = coordinates[i], v = coordinates[j];
             const tmi_point at = tmi_at(finder, (float)u, (float)v);
             const float value = tmi_sample(view, at.x, at.y);
             squares += value * value;
-            if (ring <= 1 || ring == 3) {
+            if (tmi_finder_is_dark(u, v)) {
                 dark += value;
                 darks++;
             } else {

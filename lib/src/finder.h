@@ -12,9 +12,9 @@
  * known from it alone. The axes are right-handed: `down` lies clockwise of `right` in the image. */
 typedef struct tmi_finder {
     tmi_point centre;
-    tmi_point right;  /* one module, px */
-    tmi_point down;   /* one module, px */
-    float score;      /* normalised correlation with the ideal pattern */
+    tmi_point right;   /* one module, px */
+    tmi_point down;    /* one module, px */
+    float score;       /* normalised correlation with the ideal pattern */
     float dark, light; /* gray values of its modules */
 } tmi_finder;
 
@@ -32,6 +32,13 @@ void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
 
 /* The same from 25 modules, for comparing many places. */
 void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+
+/* The print of a finder: whether the module (u, v) from its centre is dark. Its margin is light. */
+static inline bool tmi_finder_is_dark(int u, int v)
+{
+    const int a = u < 0 ? -u : u, b = v < 0 ? -v : v, ring = a > b ? a : b;
+    return ring <= 1 || ring == 3;
+}
 
 /* The finder's modules to pixels, (0, 0) at its centre. */
 static inline tmi_homography tmi_finder_map(const tmi_finder *f)

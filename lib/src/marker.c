@@ -12,16 +12,22 @@ enum {
 
 /* ---- Location ---------------------------------------------------------------------------------------- */
 
-/* The map that takes (0, -3.5), (length, -3.5), (length, 3.5) and (0, 3.5) to these points. Square to quadrilateral, after
- * Heckbert, "Fundamentals of Texture Mapping and Image Warping" (1989). */
+/* The map that takes (0, -3.5), (length, -3.5), (length, 3.5) and (0, 3.5) to these points. Square to quadrilateral,
+ * after Heckbert, "Fundamentals of Texture Mapping and Image Warping" (1989). */
 static void map_corners(const tmi_point p[4], float length, tmi_homography *out)
 {
     const float sx = p[0].x - p[1].x + p[2].x - p[3].x, sy = p[0].y - p[1].y + p[2].y - p[3].y;
     const float dx1 = p[1].x - p[2].x, dy1 = p[1].y - p[2].y, dx2 = p[3].x - p[2].x, dy2 = p[3].y - p[2].y;
     const float det = dx1 * dy2 - dx2 * dy1;
     const float g = det != 0 ? (sx * dy2 - dx2 * sy) / det : 0, h = det != 0 ? (dx1 * sy - sx * dy1) / det : 0;
-    const float s[8] = {p[1].x - p[0].x + g * p[1].x, p[3].x - p[0].x + h * p[3].x, p[0].x,
-                        p[1].y - p[0].y + g * p[1].y, p[3].y - p[0].y + h * p[3].y, p[0].y, g, h};
+    const float s[8] = {p[1].x - p[0].x + g * p[1].x,
+                        p[3].x - p[0].x + h * p[3].x,
+                        p[0].x,
+                        p[1].y - p[0].y + g * p[1].y,
+                        p[3].y - p[0].y + h * p[3].y,
+                        p[0].y,
+                        g,
+                        h};
     /* The square's (s, t) are u / length and (v + 3.5) / 7. */
     const float w = 1 + 0.5f * s[7];
     for (int k = 0; k < 8; k += 3) {
@@ -84,7 +90,8 @@ static bool fit_trend(const tmi_view *view, const tmi_homography *map, const tmi
     int good = 0;
     for (int i = 0; i < count; i++) {
         tmi_offsets by;
-        const float contrast_min = 0.1f * (finders[i].light - finders[i].dark), u = 2 * (float)i / (float)(count - 1) - 1;
+        const float contrast_min = 0.1f * (finders[i].light - finders[i].dark),
+                    u = 2 * (float)i / (float)(count - 1) - 1;
         if (!tmi_finder_offsets(view, map, (float)(PITCH * i), 0.5f, contrast_min, &by, reads) ||
             tmi_offsets_size(&by) > 1)
             continue;
@@ -168,8 +175,7 @@ typedef struct levels {
 
 static float finder_module(int u, int v)
 {
-    const int a = u < 0 ? -u : u, b = v < 0 ? -v : v, ring = a > b ? a : b;
-    return ring <= 1 || ring == 3 ? 1.0f : 0.0f;
+    return tmi_finder_is_dark(u, v) ? 1.0f : 0.0f;
 }
 
 /* Fits what a finder pattern shows by light - depth * (pattern + leaks * second differences of the pattern). */
@@ -200,8 +206,8 @@ static bool fit_levels(const tmi_view *view, const tmi_homography *map, raster r
     return true;
 }
 
-void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left, const tmi_finder *right,
-                       tmi_cells *cells, uint32_t *reads)
+void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left,
+                       const tmi_finder *right, tmi_cells *cells, uint32_t *reads)
 {
     const float light = 0.5f * (left->light + right->light), dark = 0.5f * (left->dark + right->dark);
     const float scale = 1 / real_max(1, light - dark);

@@ -19,8 +19,8 @@ void tmi_marker_refine(const tmi_view *view, const tmi_finder *left, const tmi_f
 bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tmi_homography *maps, uint32_t *reads);
 
 /* A first look at the coding region: one sample a cell, in the light that the finders show. */
-void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left, const tmi_finder *right,
-                       tmi_cells *cells, uint32_t *reads);
+void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left,
+                       const tmi_finder *right, tmi_cells *cells, uint32_t *reads);
 
 /* Samples the coding region, in the light and under the blur that its finder patterns show. False where those
  * differ too little between light and dark. */

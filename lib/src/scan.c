@@ -2,6 +2,8 @@
 
 #include "tapemark.h"
 
+#include <stdbool.h>
+
 enum { TILE = TAPEMARK_TILE_PX, NO_EXTREME = -1, EDGES = 6 };
 
 /* A scan line in the making. It follows the signal from one extreme to the next: a rise or a fall counts once
@@ -11,12 +13,12 @@ typedef struct scan_line {
     const uint8_t *pixels;
     ptrdiff_t step;
     uint8_t invert;
-    int rising;             /* the signal's direction since the last extreme */
-    int32_t turn;           /* where that direction was noticed */
-    int previous;           /* gray value of the last extreme, or NO_EXTREME */
-    int edges;              /* found so far; the last EDGES of them follow */
-    float edge[EDGES];  /* px, the newest last */
-    int level[EDGES];   /* the extreme before each edge */
+    bool rising;       /* the signal's direction since the last extreme */
+    int32_t turn;      /* where that direction was noticed */
+    int previous;      /* gray value of the last extreme, or NO_EXTREME */
+    int edges;         /* found so far; the last EDGES of them follow */
+    float edge[EDGES]; /* px, the newest last */
+    int level[EDGES];  /* the extreme before each edge */
 } scan_line;
 
 static int gray(const scan_line *scan, int32_t i)
@@ -25,7 +27,7 @@ static int gray(const scan_line *scan, int32_t i)
 }
 
 /* Where the signal passes `twice_level` / 2, near the place at which its rise or fall was noticed. */
-static float crossing(const scan_line *scan, int32_t from, int rising, int twice_level)
+static float crossing(const scan_line *scan, int32_t from, bool rising, int twice_level)
 {
     int32_t i = from;
     if (rising) {
@@ -45,25 +47,25 @@ static float crossing(const scan_line *scan, int32_t from, int rising, int twice
 
 /* Five runs, dark first, in the proportion 1:1:3:1:1. The bounds are wide because a blurred ring of one pixel
  * looks wider or narrower than it is; what gets through is looked at in both directions later on. */
-static int looks_like_finder(const scan_line *scan, tmi_hit *hit)
+static bool looks_like_finder(const scan_line *scan, tmi_hit *hit)
 {
     const float *e = scan->edge;
     const float chord = e[5] - e[0], module = chord * (1.0f / 7), slack = 0.25f;
     const float core = e[3] - e[2];
     if (core < 2.0f * module - slack || core > 4.1f * module + slack)
-        return 0;
+        return false;
     const float run[4] = {e[1] - e[0], e[2] - e[1], e[4] - e[3], e[5] - e[4]};
     for (int i = 0; i < 4; i++)
         if (run[i] < 0.35f * module || run[i] > 1.8f * module + slack)
-            return 0;
+            return false;
     const float skew = run[0] + run[1] - run[2] - run[3];
     if (skew > module + slack || -skew > module + slack)
-        return 0;
+        return false;
     hit->centre = 0.5f * (e[2] + e[3]);
     hit->chord = chord;
     const int *level = scan->level;
     hit->contrast = 0.5f * (float)(level[2] + level[4]) - (float)level[3];
-    return 1;
+    return true;
 }
 
 /* The extreme that was followed is over, since the signal at `here` has turned away from it: the edge between
@@ -114,8 +116,8 @@ static int32_t next_turn(const scan_line *scan, int32_t from, int32_t end, int l
 
 int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *context)
 {
-    scan_line scan = {.pixels = line->pixels, .step = line->step, .invert = line->invert, .previous = NO_EXTREME,
-                      .rising = 1};
+    scan_line scan = {
+        .pixels = line->pixels, .step = line->step, .invert = line->invert, .previous = NO_EXTREME, .rising = true};
     int32_t read = 0;
     int extreme = 0;
     for (int32_t word = 0; word < line->words; word++)

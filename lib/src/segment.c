@@ -30,7 +30,7 @@ enum { CM_CREDIT = 2500 };
 static bool may_go_on(const tmi_reader *reader)
 {
     tapemark_stats *stats = &reader->result->stats;
-    if (stats->work < (uint64_t)reader->config->work_budget + (uint64_t)CM_CREDIT * reader->result->cm_count)
+    if (stats->work < (uint64_t)reader->config->work_budget + (uint64_t)CM_CREDIT * stats->cms_read)
         return true;
     stats->limits |= TAPEMARK_LIMIT_WORK;
     return false;
@@ -54,8 +54,7 @@ static void read_both_ways(const tmi_reader *reader, tmi_segment *segment, int c
         segment->readings[way][cm].score = blank[way];
         if (blank[way] < blank_min || blank[way] < better - turn_clear)
             continue;
-        tmi_word_match(way == UPRIGHT ? &cells : &turned, &reader->words, &segment->readings[way][cm],
-                       &stats->work);
+        tmi_word_match(way == UPRIGHT ? &cells : &turned, &reader->words, &segment->readings[way][cm], &stats->work);
     }
 }
 
@@ -88,6 +87,8 @@ static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
 
 /* Bars have to correlate with ideal ones by this much. */
 static const float bars_min = 0.62f;
+/* And those of tapes near enough to be read well do by this much. */
+static const float clean_bars = 0.71f;
 
 /* Sum over the CMs by which one way up must fit better than the other. */
 static const float turn_min = 0.05f;
@@ -152,7 +153,8 @@ static tapemark_reject doubt(const tmi_reader *reader, const tmi_reading *readin
 }
 
 /* Judges the CM that stands at `cm` of the part first..last, read in the direction `step` (1 or -1) along the row. */
-static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readings, int cm, int first, int last, int step)
+static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readings, int cm, int first, int last,
+                             int step)
 {
     const tmi_reading *own = &readings[cm];
     bool has_support = false, has_opposition = false;
@@ -170,7 +172,7 @@ static tapemark_reject judge(const tmi_reader *reader, const tmi_reading *readin
         return doubt(reader, own, &supported);
     const tapemark_reject reason = doubt(reader, own, &alone);
     return reason == BELIEVED && has_opposition && doubt(reader, own, &opposed) != BELIEVED ? TAPEMARK_REJECT_CONFLICT
-                                                                                           : reason;
+                                                                                            : reason;
 }
 
 /* ---- Reporting --------------------------------------------------------------------------------------------- */
@@ -181,8 +183,8 @@ static tapemark_point corner(const tmi_homography *map, float u, float v)
     return (tapemark_point){at.x, at.y};
 }
 
-static void set_corners(const tmi_homography *first, const tmi_homography *last, float before, float after, bool turned,
-                        tapemark_point corners[4])
+static void set_corners(const tmi_homography *first, const tmi_homography *last, float before, float after,
+                        bool turned, tapemark_point corners[4])
 {
     const int start = turned ? 2 : 0;
     corners[start] = corner(first, -before, -3.5f);
@@ -204,14 +206,20 @@ static void report_cm(const tmi_reader *reader, const tmi_segment *segment, int 
 {
     tapemark_result *result = reader->result;
     const tmi_reading *reading = &segment->readings[turned][cm];
-    tapemark_cm out = {.id = reading->id, .confidence = tmi_reading_confidence(reading),
-                       .doubtful_cells = reading->doubtful, .corrected_cells = reading->corrected,
-                       .tm = (int16_t)tm, .slot = (int16_t)(tm == TMI_NONE ? -1 : slot)};
+    tapemark_cm out = {.id = reading->id,
+                       .confidence = tmi_reading_confidence(reading),
+                       .doubtful_cells = reading->doubtful,
+                       .corrected_cells = reading->corrected,
+                       .tm = (int16_t)tm,
+                       .slot = (int16_t)(tm == TMI_NONE ? -1 : slot)};
     set_corners(&segment->maps[cm], &segment->maps[cm], 3.5f, 28.5f, turned, out.corners);
-    if (!inside(reader->view, out.corners))
+    if (!inside(reader->view, out.corners)) {
+        result->stats.rejects[TAPEMARK_REJECT_ALIGNMENT]++;
         return;
+    }
     if (result->cm_count == result->cm_capacity) {
-        result->stats.limits |= TAPEMARK_LIMIT_CMS;
+        if (result->cm_capacity > 0)
+            result->stats.limits |= TAPEMARK_LIMIT_CMS;
         return;
     }
     tapemark_word_from_id(out.id, &out.word);
@@ -230,8 +238,8 @@ static float turn_hint(const tmi_reader *reader, const tmi_segment *segment, int
     return real_abs(along) > 0.2f ? along : 0;
 }
 
-/* Whether the blocks of the TM are as light or dark as the CMs that were read; and where some were, whether the others
- * look like CMs at all, or like something that covers them. */
+/* Whether the blocks of the TM are as light or dark as the CMs that were read; and where some were, whether the
+ * others look like CMs at all, or like something that covers them. */
 static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count, bool turned,
                    uint32_t code)
 {
@@ -246,6 +254,16 @@ static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, i
     return ((code ^ light) & known) == 0 && !(known && covered);
 }
 
+/* How sure the CMs make a TM: where some were read and others not, something may lie on those. Where none can be
+ * read, the TM is seen from afar, and they say nothing. */
+static float vouched(const tapemark_reject *reasons, int first, int count)
+{
+    int read = 0;
+    for (int cm = first; cm < first + count; cm++)
+        read += reasons[cm] == BELIEVED;
+    return read > 0 ? 0.5f + 0.5f * (float)read / (float)count : 1;
+}
+
 static bool has_bars(const tmi_reader *reader, tmi_bars_place place)
 {
     return tmi_bars_score(reader->view, place, &reader->result->stats.work) >= bars_min;
@@ -258,21 +276,23 @@ static bool ends_in_bars(const tmi_reader *reader, const tmi_segment *segment, i
     const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
     const float ink = 3.5f + TAPEMARK_BAR_MODULES;
     set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, corners);
-    return inside(reader->view, corners) && has_bars(reader, (tmi_bars_place){left, &segment->finders[first], 0, -1}) &&
+    return inside(reader->view, corners) &&
+           has_bars(reader, (tmi_bars_place){left, &segment->finders[first], 0, -1}) &&
            has_bars(reader, (tmi_bars_place){right, &segment->finders[first + count], TAPEMARK_CM_PITCH_MODULES, 1});
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
  * where it runs the other way, and 0 where that is not known. Returns the TM's index, or TMI_NONE. */
-static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapemark_reject *reasons, int first, int count,
-                     float turn)
+static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapemark_reject *reasons, int first,
+                     int count, float turn)
 {
     tapemark_result *result = reader->result;
     const bool turned = turn < 0;
     tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0};
     /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
     if (!ends_in_bars(reader, segment, first, count, turned, out.corners) &&
-        !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first], &result->stats.work) &&
+        !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
+                       &result->stats.work) &&
           ends_in_bars(reader, segment, first, count, turned, out.corners))) {
         result->stats.rejects[TAPEMARK_REJECT_BARS]++;
         return TMI_NONE;
@@ -280,8 +300,8 @@ static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapem
     tmi_tm_reading reading;
     tmi_tm_read(reader, segment, first, count, &reading);
     if (reading.vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading.code)) {
-        result->stats.rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE
-                                                                      : TAPEMARK_REJECT_CONFLICT]++;
+        result->stats
+            .rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE : TAPEMARK_REJECT_CONFLICT]++;
         return TMI_NONE;
     }
     if (result->tm_count == result->tm_capacity) {
@@ -289,7 +309,7 @@ static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapem
         return TMI_NONE;
     }
     out.vote = reading.vote;
-    out.confidence = reading.vote * real_min(1, 1.4f * reading.bars);
+    out.confidence = reading.vote * real_min(1, reading.bars * (1 / clean_bars)) * vouched(reasons, first, count);
     for (int i = 0; i < count; i++)
         out.code[i] = reading.code >> (turned ? i : count - 1 - i) & 1 ? '1' : '0';
     result->tms[result->tm_count] = out;
@@ -341,22 +361,25 @@ static void read_part(const tmi_reader *reader, tmi_segment *segment, int first,
         return;
     tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
     float evidence = turn_evidence(segment, first, count);
-    if (judge_part(reader, segment, first, count, evidence, reasons) < count && looks_like_tape(segment, first, count)) {
+    if (judge_part(reader, segment, first, count, evidence, reasons) < count &&
+        looks_like_tape(segment, first, count)) {
         read_again(reader, segment, first, count, reasons);
         evidence = turn_evidence(segment, first, count);
         judge_part(reader, segment, first, count, evidence, reasons);
     }
     const bool turned = evidence < 0, turn_is_clear = real_abs(evidence) >= turn_min;
     int tm = TMI_NONE;
-    if (count >= TAPEMARK_TM_MIN_CMS)
+    if (count >= TAPEMARK_TM_MIN_CMS && reader->result->tm_capacity > 0)
         tm = report_tm(reader, segment, reasons, first, count,
                        turn_is_clear ? evidence : turn_hint(reader, segment, first, count));
     for (int slot = 0; slot < count; slot++) {
         const int cm = turned ? first + count - 1 - slot : first + slot;
-        if (reasons[cm] == BELIEVED)
-            report_cm(reader, segment, cm, turned, tm, slot);
-        else
+        if (reasons[cm] != BELIEVED) {
             reader->result->stats.rejects[reasons[cm]]++;
+            continue;
+        }
+        reader->result->stats.cms_read++;
+        report_cm(reader, segment, cm, turned, tm, slot);
     }
 }
 

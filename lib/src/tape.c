@@ -37,7 +37,8 @@ int tmi_tape_finder_at(const tmi_tape *tape, tmi_point at)
 {
     for (int i = 0; i < tape->count; i++) {
         const tmi_finder *f = &tape->nodes[i].finder;
-        const float reach = 4 * (real_abs(f->right.x) + real_abs(f->right.y) + real_abs(f->down.x) + real_abs(f->down.y));
+        const float reach =
+            4 * (real_abs(f->right.x) + real_abs(f->right.y) + real_abs(f->down.x) + real_abs(f->down.y));
         if (real_abs(at.x - f->centre.x) > reach || real_abs(at.y - f->centre.y) > reach)
             continue;
         const tmi_point m = to_modules(f, at);
@@ -63,6 +64,13 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
 
 /* ---- Links between located finders ------------------------------------------------------------------------ */
 
+/* Perspective makes a pitch look shorter or longer in the modules of its one end, by 1.7 at the steepest angle at
+ * which tapes can be read; and the sides of a finder of seven small pixels point off by up to 10 degrees. */
+static bool may_be_a_pitch_away(tmi_point there)
+{
+    return there.x > 0.6f * pitch && there.x < 1.7f * pitch && real_abs(there.y) < 0.18f * there.x;
+}
+
 /* How badly `other` sits for the next finder in that direction; negative where it cannot be that.
  * Seen in perspective, n modules are n * sqrt(s1 * s2) long when s1 and s2 are the scales at their two ends;
  * so the product of the distances in modules of both ends is 25 squared. */
@@ -75,15 +83,15 @@ static float misfit(const tmi_finder *f, int direction, const tmi_finder *other,
         return -1; /* most are not even near: no need to turn anything */
     const tmi_finder from = turned(f, direction);
     const tmi_point there = to_modules(&from, other->centre);
-    if (there.x < 0.6f * pitch || there.x > 1.7f * pitch || real_abs(there.y) > 0.18f * there.x)
+    if (!may_be_a_pitch_away(there))
         return -1;
     for (int back = 0; back < TMI_DIRECTIONS; back++) {
         const tmi_finder to = turned(other, back);
         const tmi_point here = to_modules(&to, f->centre);
-        if (here.x < 0.6f * pitch || here.x > 1.7f * pitch || real_abs(here.y) > 0.18f * here.x)
+        if (!may_be_a_pitch_away(here))
             continue;
         const float ratio = there.x * here.x / (pitch * pitch);
-        if (ratio < 0.77f || ratio > 1.3f)
+        if (ratio < 0.77f || ratio > 1.3f) /* both ends' scales may be off by an eighth where modules are a pixel */
             continue;
         *direction_back = back;
         return real_abs(ratio - 1) * pitch + real_abs(there.y) + real_abs(here.y);
@@ -249,7 +257,7 @@ void tmi_tape_link(tmi_tape *tape)
 
 /* Follows the links from a row's end. A link is taken off when it is followed, so that each is followed once and
  * a circle cannot trap. */
-static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX_CHAIN])
+static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX_CHAIN], int *last)
 {
     int count = 0;
     chain[count++] = turned(&tape->nodes[i].finder, direction);
@@ -264,8 +272,7 @@ static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX
         i = j;
         j = tape->nodes[i].neighbour[direction];
     }
-    if (count == TMI_MAX_CHAIN && tape->nodes[i].neighbour[direction] != TMI_NONE)
-        tape->stats->limits |= TAPEMARK_LIMIT_LENGTH;
+    *last = i;
     return count;
 }
 
@@ -274,8 +281,15 @@ int tmi_tape_next_chain(tmi_tape *tape, int *next, tmi_finder chain[TMI_MAX_CHAI
     for (; *next < tape->count; ++*next)
         for (int d = 0; d < TMI_DIRECTIONS; d++) {
             const int16_t *neighbour = tape->nodes[*next].neighbour;
-            if (neighbour[d] != TMI_NONE && neighbour[(d + 2) & 3] == TMI_NONE)
-                return follow(tape, *next, d, chain);
+            if (neighbour[d] == TMI_NONE || neighbour[(d + 2) & 3] != TMI_NONE)
+                continue;
+            int last;
+            const int count = follow(tape, *next, d, chain, &last);
+            if (count == TMI_MAX_CHAIN && !is_single(&tape->nodes[last])) {
+                tape->stats->limits |= TAPEMARK_LIMIT_LENGTH;
+                *next = last < *next ? last : *next; /* the rest of the row starts there */
+            }
+            return count;
         }
     return 0;
 }

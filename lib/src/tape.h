@@ -7,11 +7,7 @@
 
 #include "tapemark.h"
 
-enum {
-    TMI_MAX_FINDERS = 128,
-    TMI_MAX_CHAIN = TAPEMARK_TM_MAX_CMS + 1,
-    TMI_NONE = -1
-};
+enum { TMI_MAX_FINDERS = 128, TMI_MAX_CHAIN = TAPEMARK_TM_MAX_CMS + 1, TMI_NONE = -1 };
 
 /* Directions of a finder: its right, down, left and up side. */
 enum { TMI_DIRECTIONS = 4 };
@@ -24,7 +20,7 @@ typedef struct tmi_node {
 typedef struct tmi_tape {
     const tmi_view *view;
     tapemark_stats *stats;
-    uint32_t work_max; /* stats->work must not grow beyond this */
+    uint32_t work_max; /* no search is begun once stats->work has reached this */
     int count;
     tmi_node nodes[TMI_MAX_FINDERS];
 } tmi_tape;

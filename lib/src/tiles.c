@@ -138,8 +138,8 @@ static void lay_out(tmi_tiles *tiles, const tmi_view *view, void *memory)
     tiles->pitch = tiles->columns + 2;
     tiles->row_words = (tiles->columns + 31) / 32;
     tiles->column_words = (tiles->rows + 31) / 32;
-    const size_t bit_words = (size_t)tiles->rows * (size_t)tiles->row_words +
-                             (size_t)tiles->columns * (size_t)tiles->column_words;
+    const size_t bit_words =
+        (size_t)tiles->rows * (size_t)tiles->row_words + (size_t)tiles->columns * (size_t)tiles->column_words;
     const size_t plane = (size_t)tiles->pitch * ((size_t)tiles->rows + 2);
     tiles->row_bits = memory;
     tiles->column_bits = tiles->row_bits + (size_t)tiles->rows * (size_t)tiles->row_words;
@@ -152,8 +152,7 @@ static void lay_out(tmi_tiles *tiles, const tmi_view *view, void *memory)
     tiles->swing = tiles->high + plane;
 }
 
-bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
-                     void *memory)
+bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max, void *memory)
 {
     lay_out(tiles, view, memory);
     for (int32_t y = 0; y < tiles->rows; y++)

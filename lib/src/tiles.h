@@ -15,14 +15,14 @@ typedef struct tmi_tiles {
      * a new word. They let scan lines leap over flat parts. */
     uint32_t *row_bits, *column_bits;
     int32_t columns, rows;
-    ptrdiff_t pitch;     /* from one row of tiles to the next */
+    ptrdiff_t pitch; /* from one row of tiles to the next */
     int32_t row_words, column_words;
-    uint32_t active;     /* tiles with a swing */
+    uint32_t active; /* tiles with a swing */
 } tmi_tiles;
 
-/* Lays everything out in `memory`, aligned for uint32_t and of TMI_TILES_BYTES at least, and fills it. About `active_max` tiles stay active: where more have
- * enough contrast, the bar is raised. Returns whether that was needed. */
-bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max,
-                     void *memory);
+/* Lays everything out in `memory`, which is aligned for uint32_t and as large as TAPEMARK_WORKSPACE_BYTES has it
+ * beyond the fixed part, and fills it. About `active_max` tiles stay active: where more have enough contrast, the bar
+ * is raised. Returns whether that was needed. */
+bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max, void *memory);
 
 #endif

@@ -23,8 +23,13 @@ static const float hopeless_gain = -0.9f;
  * it, words that add doubtful ones to the right word would crowd that off the list. */
 static const float one_cost = 0.35f;
 
-/* Correlations closer than this do not tell two words apart; then the caller's list of ids may. */
+/* Correlations closer than this do not tell two words apart; then the caller's ids may. It is about half of the
+ * smallest difference between a right word and the next one in readings with odds of 1.6. */
 static const float known_id_bonus = 0.03f;
+
+/* Sum of both leaks beyond which even without noise the right word may be missing on the shortlist, so that the odds
+ * against the others say less. */
+static const float too_blurred = 0.42f;
 
 typedef struct candidate {
     float gain; /* what its ones take off the squared error, one_cost included; for choosing words to look at */
@@ -48,7 +53,8 @@ static float score_word(const tmi_evidence *e, const candidate *word)
 
 /* ---- Candidates -------------------------------------------------------------------------------------- */
 
-/* The data bits of which most is there, best first, each with the squared error that it takes off. Returns how many. */
+/* The data bits of which most is there, best first, each with the squared error that it takes off. Returns how many.
+ */
 static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
@@ -117,6 +123,8 @@ static void list_words(const tmi_evidence *e, shortlist *list, uint32_t *work)
 
 static bool is_known(const tmi_words *words, int32_t id)
 {
+    if (id > words->id_max || id < -words->id_max)
+        return false;
     if (!words->known_ids)
         return true;
     size_t low = 0, high = words->known_id_count;
@@ -143,8 +151,10 @@ typedef struct contest {
 
 static void begin_contest(contest *c, const tmi_evidence *e)
 {
-    *c = (contest){.e = e, .variance = e->seen_energy - e->seen_sum * e->seen_sum / CELLS,
-                   .blank_error = e->seen_energy - 2 * e->seen_blank + e->blank_energy, .best = -1};
+    *c = (contest){.e = e,
+                   .variance = e->seen_energy - e->seen_sum * e->seen_sum / CELLS,
+                   .blank_error = e->seen_energy - 2 * e->seen_blank + e->blank_energy,
+                   .best = -1};
     for (int bit = TAPEMARK_DATA_BITS; bit < TMI_BITS; bit++)
         c->checksum_max += real_max(0, tmi_evidence_gain(e, bit));
 }
@@ -222,7 +232,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     for (int i = 0; i < list.count; i++) {
         const candidate *word = &list.words[i];
         const int32_t id = tmi_id_of_positions(word->positions, word->count, e.sign < 0);
-        if (id == TMI_NO_ID || id > words->id_max || id < -words->id_max || !in_reach(&c, word))
+        if (id == TMI_NO_ID || !in_reach(&c, word))
             continue;
         scores[count] = score_word(&e, word);
         *work += SCORE_WORK;
@@ -230,7 +240,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         ids[count++] = id;
     }
     best_two(scores, ids, count, words, true, reading);
-    if (words->known_ids && reading->id != TMI_NO_ID) {
+    if (reading->id != TMI_NO_ID && (words->known_ids || words->id_max < TAPEMARK_MAX_ID)) {
         tmi_reading known;
         best_two(scores, ids, count, words, false, &known);
         if (known.id != TMI_NO_ID && known.score > reading->score - known_id_bonus)
@@ -238,6 +248,8 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         else
             reading->unknown = true;
     }
+    if (cells->leak_along + cells->leak_across > too_blurred)
+        reading->odds = 1 + 0.4f * (reading->odds - 1);
     if (reading->id != TMI_NO_ID)
         count_cells(cells, reading);
 }
