@@ -27,8 +27,8 @@ static const float one_cost = 0.35f;
  * smallest difference between a right word and the next one in readings with odds of 1.6. */
 static const float known_id_bonus = 0.03f;
 
-/* Sum of both leaks beyond which even without noise the right word may be missing on the shortlist, so that the odds
- * against the others say less. */
+/* Sum of both leaks beyond which even without noise the right word may be missing on the shortlist. The odds are then
+ * cut down to what is enough only where the next CM says the same id. */
 static const float too_blurred = 0.42f;
 
 typedef struct candidate {
@@ -249,7 +249,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
             reading->unknown = true;
     }
     if (cells->leak_along + cells->leak_across > too_blurred)
-        reading->odds = 1 + 0.4f * (reading->odds - 1);
+        reading->odds = 1 + 0.15f * (reading->odds - 1);
     if (reading->id != TMI_NO_ID)
         count_cells(cells, reading);
 }

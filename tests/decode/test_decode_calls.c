@@ -313,12 +313,10 @@ static void reads_nothing_behind_the_last_pixel(void **state)
 static void says_when_there_is_no_room_for_cms(void **state)
 {
     (void)state;
-    for (size_t capacity = 0; capacity < 3; capacity++) {
+    for (size_t capacity = 1; capacity < 3; capacity++) {
         call *c = good_call();
         memset(c->cms, CANARY, sizeof c->cms);
         c->result.cm_capacity = capacity;
-        if (capacity == 0)
-            c->result.cms = NULL;
         assert_int_equal(run(c), TAPEMARK_NO_ROOM);
         assert_int_equal(c->result.cm_count, capacity);
         assert_int_equal(c->result.tm_count, 1);
@@ -331,18 +329,43 @@ static void says_when_there_is_no_room_for_cms(void **state)
     }
 }
 
+/* Two tapes, one above the other, and room for one. */
 static void says_when_there_is_no_room_for_tms(void **state)
+{
+    (void)state;
+    static uint8_t two[2 * HEIGHT * WIDTH], workspace[TAPEMARK_WORKSPACE_BYTES(WIDTH, 2 * HEIGHT)];
+    memcpy(two, tape_pixels, sizeof tape_pixels);
+    memcpy(two + sizeof tape_pixels, tape_pixels, sizeof tape_pixels);
+    call *c = good_call();
+    c->image = (tapemark_image){two, WIDTH, 2 * HEIGHT, WIDTH};
+    c->result.tm_capacity = 1;
+    assert_int_equal(tapemark_decode(&c->image, NULL, workspace, sizeof workspace, &c->result), TAPEMARK_NO_ROOM);
+    assert_int_equal(c->result.tm_count, 1);
+    assert_int_equal(c->result.cm_count, 6);
+    assert_int_equal(c->result.stats.limits, TAPEMARK_LIMIT_TMS);
+}
+
+static void kinds_that_are_not_wanted_are_no_lack_of_room(void **state)
 {
     (void)state;
     call *c = good_call();
     c->result.tms = NULL;
     c->result.tm_capacity = 0;
-    assert_int_equal(run(c), TAPEMARK_NO_ROOM);
-    assert_int_equal(c->result.cm_count, 3);
+    assert_int_equal(run(c), TAPEMARK_OK);
+    assert_int_equal(c->result.stats.limits, 0);
     assert_int_equal(c->result.tm_count, 0);
-    assert_int_equal(c->result.stats.limits, TAPEMARK_LIMIT_TMS);
-    for (size_t i = 0; i < 3; i++)
+    assert_int_equal(c->result.cm_count, 3);
+    for (size_t i = 0; i < 3; i++) {
         assert_int_equal(c->cms[i].tm, -1);
+        assert_int_equal(c->cms[i].slot, -1);
+    }
+    c = good_call();
+    c->result.cms = NULL;
+    c->result.cm_capacity = 0;
+    assert_int_equal(run(c), TAPEMARK_OK);
+    assert_int_equal(c->result.stats.limits, 0);
+    assert_int_equal(c->result.cm_count, 0);
+    assert_int_equal(c->result.tm_count, 1);
 }
 
 static void finders_that_do_not_fit_are_no_loss(void **state)
@@ -420,7 +443,8 @@ int main(void)
         cmocka_unit_test(keeps_to_its_view_and_never_writes_to_it),
         cmocka_unit_test(reads_nothing_behind_the_last_pixel),
         cmocka_unit_test(says_when_there_is_no_room_for_cms),
-        cmocka_unit_test(says_when_there_is_no_room_for_tms),
+        cmocka_unit_test(reads_no_tms_where_none_are_wanted),
+        cmocka_unit_test(kinds_that_are_not_wanted_are_no_lack_of_room),
         cmocka_unit_test(finders_that_do_not_fit_are_no_loss),
         cmocka_unit_test(says_when_the_budget_was_spent),
         cmocka_unit_test(a_small_budget_makes_up_nothing),
