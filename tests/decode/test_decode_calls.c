@@ -443,7 +443,7 @@ int main(void)
         cmocka_unit_test(keeps_to_its_view_and_never_writes_to_it),
         cmocka_unit_test(reads_nothing_behind_the_last_pixel),
         cmocka_unit_test(says_when_there_is_no_room_for_cms),
-        cmocka_unit_test(reads_no_tms_where_none_are_wanted),
+        cmocka_unit_test(says_when_there_is_no_room_for_tms),
         cmocka_unit_test(kinds_that_are_not_wanted_are_no_lack_of_room),
         cmocka_unit_test(finders_that_do_not_fit_are_no_loss),
         cmocka_unit_test(says_when_the_budget_was_spent),

@@ -45,7 +45,7 @@ static void finds_nothing_in_clutter(void **state)
     (void)state;
     unsigned limited = 0;
     for (int kind = SCENE_PLAIN; kind < SCENE_CLUTTER_COUNT; kind++)
-        find_nothing_in((scene_clutter)kind, 320, 240, &limited);
+        find_nothing_in((scene_clutter)kind, 256, 192, &limited);
     assert_true(limited > 0); /* some of it was too much to look at all of it */
 }
 
@@ -88,7 +88,8 @@ static void a_sheet_of_tapes_stays_within_bounds(void **state)
         assert_nothing_wrong(got, &view);
         assert_work_bounded(got, tapemark_default_work_budget(640, 640));
         if (count_read(got) < 2 * CMS)
-            fail_msg("%s: %u of %u CMs were read", got->name, (unsigned)count_read(got), (unsigned)got->truth.cm_count);
+            fail_msg("%s: %u of %u CMs were read", got->name, (unsigned)count_read(got),
+                     (unsigned)got->truth.cm_count);
     }
 }
 

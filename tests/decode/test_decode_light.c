@@ -101,7 +101,7 @@ static void reads_out_of_focus(void **state)
     one_tape all = usual_view();
     all.view.optics.defocus_px = 1.2;
     assert_all_read(decode_tape(&all, NULL, "defocus"), &all.view, 0.5);
-    all.view.optics.defocus_px = 1.8; /* bars are gone, ids are not */
+    all.view.optics.defocus_px = 1.5; /* half a module */
     const decoding *got = decode_tape(&all, NULL, "strong defocus");
     assert_nothing_wrong(got, &all.view);
     assert_int_equal(count_read(got), 6);

@@ -26,8 +26,8 @@ static void reads_light_on_dark_only_when_asked(void **state)
 
 /* ---- Roll ------------------------------------------------------------------------------------------------ */
 
-/* A tape of which cells cannot be told apart, only blocks: each coding region is evenly as gray as it is on the whole.
- * Drawn in one of the four directions along rows and columns, quarter turns clockwise from the right. */
+/* A tape of which cells cannot be told apart, only blocks: each coding region is evenly as gray as it is on the
+ * whole. Drawn in one of the four directions along rows and columns, quarter turns clockwise from the right. */
 enum { SIDE_PX = 360, MODULE_PX = 2 };
 
 static void draw_plain_blocks(int quarter_turns, uint8_t *pixels)

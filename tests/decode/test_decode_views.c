@@ -10,7 +10,8 @@ static void reads_a_single_cm_at_many_sizes(void **state)
     static const int32_t ids[] = {0, -1, 57, -3081, 79157, -TAPEMARK_MAX_ID};
     for (size_t s = 0; s < COUNT_OF(sizes_px); s++)
         for (size_t i = 0; i < COUNT_OF(ids); i++) {
-            one_tape all = place_tape(scene_default(640, 240), &ids[i], 1, false,
+            const int32_t width_px = (int32_t)(34 * sizes_px[s]) + 40, height_px = (int32_t)(9 * sizes_px[s]) + 40;
+            one_tape all = place_tape(scene_default(width_px, height_px), &ids[i], 1, false,
                                       (scene_pose){.px_per_module = sizes_px[s], .dx_px = 0.3, .dy_px = 0.7});
             char name[64];
             snprintf(name, sizeof name, "id %d at %g px a module", (int)ids[i], sizes_px[s]);
@@ -22,7 +23,7 @@ static void reads_a_cm_that_fills_the_frame(void **state)
 {
     (void)state;
     static const int32_t ids[] = {21, -16};
-    static const double sizes_px[] = {4, 8, 12, 16, 26, 40, 60};
+    static const double sizes_px[] = {2.5, 4, 7.6, 12, 18.6, 26};
     for (size_t s = 0; s < COUNT_OF(sizes_px); s++)
         for (size_t i = 0; i < COUNT_OF(ids); i++) {
             const int32_t width_px = (int32_t)(34 * sizes_px[s]), height_px = (int32_t)(9 * sizes_px[s]);
@@ -32,6 +33,13 @@ static void reads_a_cm_that_fills_the_frame(void **state)
             snprintf(name, sizeof name, "a CM %d wide over the frame, id %d", (int)width_px, (int)ids[i]);
             assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
         }
+}
+
+static void reads_a_cm_of_huge_modules(void **state)
+{
+    (void)state;
+    one_tape all = place_tape(scene_default(2040, 540), &five_ids[1], 1, false, (scene_pose){.px_per_module = 60});
+    assert_all_read(decode_tape(&all, NULL, "60 px a module"), &all.view, 0.5);
 }
 
 static void reads_tapes_of_all_lengths(void **state)
@@ -131,6 +139,7 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_a_single_cm_at_many_sizes),
         cmocka_unit_test(reads_a_cm_that_fills_the_frame),
+        cmocka_unit_test(reads_a_cm_of_huge_modules),
         cmocka_unit_test(reads_tapes_of_all_lengths),
         cmocka_unit_test(reads_the_longest_tape),
         cmocka_unit_test(reads_in_all_rolls),

@@ -4,8 +4,9 @@
 #include <math.h>
 
 #include "finder.h"
+#include "geometry.h"
 
-enum { SIDE = 400 };
+enum { SIDE = 300 };
 
 /* A picture with a CM in it, of whose finder patterns the left one is looked at. */
 typedef struct pattern {
@@ -40,7 +41,7 @@ static void render_pattern(double px_per_module, double roll_deg, double yaw_deg
     view.camera.focal_px = 1e5;
     view.optics.defocus_px = defocus_px;
     scene_tape tape = scene_tape_of(&id, 1, false);
-    const double a = roll_deg * 3.14159265358979 / 180, shift = 12.5 * px_per_module * cos(yaw_deg * 3.14159265358979 / 180);
+    const double a = radians(roll_deg), shift = 12.5 * px_per_module * cos(radians(yaw_deg));
     scene_place(&view, &tape, (scene_pose){.px_per_module = px_per_module, .roll_deg = roll_deg, .yaw_deg = yaw_deg,
                                            .pitch_deg = pitch_deg, .dx_px = shift * cos(a) + 0.37,
                                            .dy_px = shift * sin(a) - 0.21});
@@ -49,7 +50,8 @@ static void render_pattern(double px_per_module, double roll_deg, double yaw_deg
     if (!scene_render(&view, seen.pixels, &truth))
         fail_msg("cannot be rendered: %s", scene_problem(&view));
     const tapemark_point *c = truth.cms[0].corners;
-    const tapemark_point centre = mixed(c, 3.5 / 32, 0.5), right = mixed(c, 4.5 / 32, 0.5), down = mixed(c, 3.5 / 32, 4.5 / 7);
+    const tapemark_point centre = mixed(c, 3.5 / 32, 0.5), right = mixed(c, 4.5 / 32, 0.5);
+    const tapemark_point down = mixed(c, 3.5 / 32, 4.5 / 7);
     seen.x = (double)centre.x_px;
     seen.y = (double)centre.y_px;
     seen.right_x = (double)right.x_px - seen.x;
@@ -92,7 +94,8 @@ static void assert_located(const char *what, double value, double centre_px, dou
         if (!locate(offsets[i][0], offsets[i][1], &f))
             fail_msg("%s %g: not located", what, value);
         const double off = hypot((double)f.centre.x - seen.x, (double)f.centre.y - seen.y);
-        const double right = axis_error(&f, seen.right_x, seen.right_y), down = axis_error(&f, seen.down_x, seen.down_y);
+        const double right = axis_error(&f, seen.right_x, seen.right_y);
+        const double down = axis_error(&f, seen.down_x, seen.down_y);
         if (off > centre_px || right > axis_share || down > axis_share)
             fail_msg("%s %g: centre off by %.3f px, axes by %.3f and %.3f", what, value, off, right, down);
         assert_true(f.right.x * f.down.y - f.right.y * f.down.x > 0); /* right-handed */
@@ -129,7 +132,7 @@ static void located_when_foreshortened(void **state)
     static const double tilts_deg[] = {-70, -60, -45, 30, 48, 60, 70};
     for (size_t i = 0; i < COUNT_OF(tilts_deg); i++)
         for (double roll_deg = 0; roll_deg <= 90; roll_deg += 22.5) {
-            const double px_per_module = 2.2 / cos(tilts_deg[i] * 3.14159265358979 / 180);
+            const double px_per_module = 2.2 / cos(radians(tilts_deg[i]));
             render_pattern(px_per_module, roll_deg, 0, tilts_deg[i], 0.4);
             assert_located("pitch", tilts_deg[i], 0.15, 0.04);
             render_pattern(px_per_module, roll_deg, tilts_deg[i], 0, 0.4);
@@ -160,7 +163,7 @@ static void located_through_blur(void **state)
     }
 }
 
-/* ---- Refined ---------------------------------------------------------------------------------------------------- */
+/* ---- Refined ------------------------------------------------------------------------------------------------ */
 
 static tmi_finder true_finder(void)
 {
@@ -210,7 +213,7 @@ static void scores_tell_right_from_wrong_places(void **state)
     assert_true(inverted.score < -0.9f);
 }
 
-/* ---- Rejected ---------------------------------------------------------------------------------------------------- */
+/* ---- Rejected ----------------------------------------------------------------------------------------------- */
 
 static void draw(int (*dark)(int x, int y))
 {

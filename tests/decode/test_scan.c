@@ -294,8 +294,9 @@ static void less_than_the_swing_is_no_edge(void **state)
 static void wrong_proportions_are_no_hits(void **state)
 {
     (void)state;
-    static const int wrong[][5] = {{1, 1, 1, 1, 1}, {1, 1, 7, 1, 1}, {3, 1, 1, 1, 3}, {1, 3, 1, 3, 1}, {1, 1, 3, 1, 5},
-                                   {5, 1, 3, 1, 1}, {1, 1, 3, 4, 1}, {2, 2, 3, 1, 1}, {1, 1, 3, 3, 3}, {3, 3, 3, 3, 3}};
+    static const int wrong[][5] = {{1, 1, 1, 1, 1}, {1, 1, 7, 1, 1}, {3, 1, 1, 1, 3}, {1, 3, 1, 3, 1},
+                                   {1, 1, 3, 1, 5}, {5, 1, 3, 1, 1}, {1, 1, 3, 4, 1}, {2, 2, 3, 1, 1},
+                                   {1, 1, 3, 3, 3}, {3, 3, 3, 3, 3}};
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
         for (int module = 2; module <= 12; module++) {
             begin();
@@ -316,7 +317,8 @@ static void wrong_proportions_are_no_hits(void **state)
 static void slightly_wrong_proportions_are_hits(void **state)
 {
     (void)state;
-    static const int px[][5] = {{5, 4, 12, 4, 3}, {3, 5, 12, 5, 3}, {4, 4, 14, 4, 4}, {5, 3, 13, 3, 5}, {4, 4, 10, 4, 4}};
+    static const int px[][5] = {
+        {5, 4, 12, 4, 3}, {3, 5, 12, 5, 3}, {4, 4, 14, 4, 4}, {5, 3, 13, 3, 5}, {4, 4, 10, 4, 4}};
     for (size_t i = 0; i < sizeof px / sizeof *px; i++) {
         begin();
         run_of(80, 200);
