@@ -38,28 +38,22 @@ static bool reserve(still_file *file, size_t extra, error_text *error)
     return true;
 }
 
-static bool say_cut_short(still_file *file, error_text *error)
-{
-    if (!byte_reader_failed(file->reader, error))
-        error_text_set(error, "is cut short: picture %llu ends after %zu bytes",
-                       (unsigned long long)file->frame_count, file->size);
-    return false;
-}
-
 /* Takes one byte into the picture; -1 at the end, with an error. */
 static int take_byte(still_file *file, error_text *error)
 {
     if (!reserve(file, 1, error))
         return -1;
     int byte = byte_reader_get(file->reader);
-    if (byte < 0)
-        say_cut_short(file, error);
-    else
+    if (byte >= 0)
         file->bytes[file->size++] = (uint8_t)byte;
+    else if (!byte_reader_failed(file->reader, error))
+        error_text_set(error, "is cut short: picture %llu ends after %zu bytes",
+                       (unsigned long long)file->frame_count, file->size);
     return byte;
 }
 
-/* Takes a marker segment after its marker: two bytes of length, which count themselves, and the content. */
+/* Takes a marker segment after its marker: two bytes of length, which count themselves, and the content. That the
+ * content is cut short will be noticed by who asks for the next byte. */
 static bool take_segment(still_file *file, error_text *error)
 {
     int high = take_byte(file, error);
@@ -70,9 +64,8 @@ static bool take_segment(still_file *file, error_text *error)
     length = length < 2 ? 0 : length - 2;
     if (!reserve(file, length, error))
         return false;
-    size_t got = byte_reader_read(file->reader, file->bytes + file->size, length);
-    file->size += got;
-    return got == length || say_cut_short(file, error);
+    file->size += byte_reader_read(file->reader, file->bytes + file->size, length);
+    return true;
 }
 
 /* Takes bytes up to and with the next marker and returns it, -1 on failure. A zero or a restart marker after

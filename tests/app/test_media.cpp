@@ -229,6 +229,21 @@ void jpegs_one_after_the_other(void **)
     expect_still(encode(".jpg", first) + bytes{0, 1, 2, 3}, first, 4);
 }
 
+/* Restart markers stand between parts of the coded pixels; a preview in a segment has an end of its own. */
+void jpegs_with_markers_inside(void **)
+{
+    cv::Mat picture = ramp(48, 32);
+    bytes restarts;
+    assert_true(cv::imencode(".jpg", picture, restarts, {cv::IMWRITE_JPEG_RST_INTERVAL, 2}));
+    expect_still(restarts, picture, 4);
+
+    bytes plain = encode(".jpg", picture);
+    bytes comment = {0xff, 0xfe, 0, 4, 'h', 'i'};
+    bytes preview = {0xff, 0xef, 0, 8, 0xff, 0xd8, 0xff, 0xd9, 0xff, 0xd9};
+    expect_still(bytes(plain.begin(), plain.begin() + 2) + comment + preview + bytes(plain.begin() + 2, plain.end()),
+                 picture, 4);
+}
+
 void damaged_stills(void **)
 {
     bytes jpeg = encode(".jpg", noise(64, 48, CV_8UC1)), png = encode(".png", noise(64, 48, CV_8UC1));
@@ -250,7 +265,6 @@ cv::Mat video_frame(int number)
     return cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(20 * number));
 }
 
-/* In a file whose name FFmpeg could take for a protocol. */
 std::string write_video()
 {
     std::string path = temporary_file(":video.avi", "", 0);
@@ -275,7 +289,10 @@ void expect_video_frames(const reading &got)
 void video_is_read_to_its_end(void **)
 {
     std::string path = write_video();
-    reading got = read_path(path);
+    size_t slash = path.rfind('/');
+    /* What stands before the colon could be taken for the name of a protocol. */
+    assert_int_equal(chdir(path.substr(0, slash).c_str()), 0);
+    reading got = read_path(path.substr(slash + 1));
     unlink(path.c_str());
     assert_string_equal(got.error.c_str(), "");
     assert_int_equal(got.frames.size(), video_frames);
@@ -340,6 +357,7 @@ int main()
         cmocka_unit_test(deep_and_coloured_stills),
         cmocka_unit_test(transparent_stills_lie_on_white),
         cmocka_unit_test(jpegs_one_after_the_other),
+        cmocka_unit_test(jpegs_with_markers_inside),
         cmocka_unit_test(damaged_stills),
         cmocka_unit_test(video_is_read_to_its_end),
         cmocka_unit_test(cut_video_gives_its_first_frames_and_an_error),
