@@ -27,9 +27,12 @@ static const float one_cost = 0.35f;
  * smallest difference between a right word and the next one in readings with odds of 1.6. */
 static const float known_id_bonus = 0.03f;
 
-/* Sum of both leaks beyond which even without noise the right word may be missing on the shortlist. The odds are then
- * cut down to what is enough only where the next CM says the same id. */
-static const float too_blurred = 0.42f;
+/* Blur beyond which even without noise the right word may be missing on the shortlist: of both leaks together, or of
+ * one. The odds are then cut down to what is enough only where the next CM says the same id. */
+static bool is_too_blurred(const tmi_cells *cells)
+{
+    return cells->leak_along + cells->leak_across > 0.46f || real_max(cells->leak_along, cells->leak_across) > 0.28f;
+}
 
 typedef struct candidate {
     float gain; /* what its ones take off the squared error, one_cost included; for choosing words to look at */
@@ -248,7 +251,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         else
             reading->unknown = true;
     }
-    if (cells->leak_along + cells->leak_across > too_blurred)
+    if (is_too_blurred(cells))
         reading->odds = 1 + 0.15f * (reading->odds - 1);
     if (reading->id != TMI_NO_ID)
         count_cells(cells, reading);
