@@ -19,7 +19,17 @@ typedef struct frame_report {
     const places *known;  /* NULL without a map */
 } frame_report;
 
-/* One line, however many markers. */
+/* One line, however many markers:
+ *
+ *     {"source":"walk.y4m","frame":0,"width":480,"height":270,"decode_us":812,"markers":[…],"time_s":0.04,
+ *      "limits":["scan"]}
+ *
+ * with first the CMs, {"type":"cm","id":-20,"corners":[[x,y] four times],"confidence":0.98,"doubtful":3,
+ * "corrected":0,"tm":0,"slot":2,"x":1.25,"y":2}, then the TMs, {"type":"tm","code":"000101","directed":true,
+ * "corners":…,"confidence":0.9,"cms":[-48,-49],"vote":1,"x":…,"y":…}. "tm" is an index among the TMs of the line;
+ * "cms" are the ids read in a TM, in the order of their slots. "tm" and "slot", "x" and "y" in metres on the plan,
+ * "time_s" and "limits" are there only where they apply. Keys may be added at the ends, never renamed: scripts
+ * depend on them. */
 void report_add_json(text_buffer *buffer, const frame_report *report);
 
 /* One row a marker; none for a frame without. */
