@@ -16,7 +16,8 @@ typedef struct tmi_reading {
 /* 0 to 1: how much of the cells the word explains, and how much more than the next best one. */
 static inline float tmi_reading_confidence(const tmi_reading *reading)
 {
-    return reading->score > 0 ? reading->score * (1 - 1 / (reading->odds * reading->odds)) : 0;
+    const float odds = reading->odds;
+    return reading->score > 0 ? reading->score * (1 - 1 / (odds * odds * odds)) : 0;
 }
 
 /* Restrictions on the words that may be read; ids as in tapemark_config. */
