@@ -101,29 +101,30 @@ static tmi_scan column_of(const tmi_view *view, const tmi_tiles *tiles, int32_t 
         tiles->column_words};
 }
 
-/* The k-th of 2^bits numbers in an order in which any first part of them lies evenly spread. */
-static int32_t spread(int32_t k, int bits)
+/* The least power of two that is not below `count`. */
+static int32_t power_of_two_for(int32_t count)
 {
-    int32_t reversed = 0;
-    for (int i = 0; i < bits; i++)
-        reversed |= (k >> i & 1) << (bits - 1 - i);
-    return reversed;
+    int32_t power = 1;
+    while (power < count)
+        power *= 2;
+    return power;
 }
 
-static int bits_for(int32_t count)
+/* Steps through 0 .. power - 1 in an order in which any first part of it lies evenly spread: counts upwards with the
+ * bits in reverse. */
+static int32_t next_spread(int32_t index, int32_t power)
 {
-    int bits = 0;
-    while (1 << bits < count)
-        bits++;
-    return bits;
+    int32_t bit = power / 2;
+    for (; bit > 0 && index & bit; bit /= 2)
+        index -= bit;
+    return index + bit;
 }
 
-/* The k-th row or column in spread order, if there is one. */
-static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t k, int bits)
+static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)
 {
     const tmi_view *view = s->tape->view;
-    const int32_t line = 1 + LINE_SPACING * spread(k, bits);
-    if (k >> bits || line >= (s->vertical ? view->width : view->height))
+    const int32_t line = 1 + LINE_SPACING * index;
+    if (line >= (s->vertical ? view->width : view->height))
         return;
     const tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
     s->tape->stats->work += (uint32_t)tmi_scan_line(&scan, try_hit, s);
@@ -134,16 +135,20 @@ static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t k, int bits)
 static void scan_lines(tmi_tape *tape, const tmi_tiles *tiles, uint32_t work_max)
 {
     seeker rows = {tape, false}, columns = {tape, true};
-    const int row_bits = bits_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
-    const int column_bits = bits_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
-    const int32_t steps = 1 << (row_bits > column_bits ? row_bits : column_bits);
-    for (int32_t k = 0; k < steps; k++) {
+    const int32_t row_power = power_of_two_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
+    const int32_t column_power = power_of_two_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
+    int32_t row = 0, column = 0;
+    for (int32_t step = 0; step < row_power || step < column_power; step++) {
         if (tape->stats->work >= work_max) {
             tape->stats->limits |= TAPEMARK_LIMIT_SCAN;
             return;
         }
-        scan_one(&rows, tiles, k, row_bits);
-        scan_one(&columns, tiles, k, column_bits);
+        if (step < row_power)
+            scan_one(&rows, tiles, row);
+        if (step < column_power)
+            scan_one(&columns, tiles, column);
+        row = next_spread(row, row_power);
+        column = next_spread(column, column_power);
     }
 }
 
@@ -195,8 +200,13 @@ static tapemark_config with_defaults(const tapemark_config *config, const tapema
 static tmi_view view_of(const tapemark_image *image, tapemark_polarity polarity)
 {
     const bool inverted = polarity == TAPEMARK_LIGHT_ON_DARK;
-    return (tmi_view){image->pixels,      image->width_px,         image->height_px,        image->stride_bytes,
-                      inverted ? 255 : 0, inverted ? -1.0f : 1.0f, inverted ? 255.0f : 0.0f};
+    return (tmi_view){.pixels = image->pixels,
+                      .width = image->width_px,
+                      .height = image->height_px,
+                      .stride = image->stride_bytes,
+                      .invert = inverted ? 255 : 0,
+                      .sign = inverted ? -1.0f : 1.0f,
+                      .offset = inverted ? 255.0f : 0.0f};
 }
 
 /* A part of the budget; in 64 bits, for the budget may be anything. */

@@ -31,28 +31,23 @@ void tmi_cells_turn(tmi_cells *cells)
 
 /* ---- Expected cells --------------------------------------------------------------------------------- */
 
-/* One row of modules, blurred along the tape. Beside the coding region there is a light module. */
-static float blurred_along(uint32_t row, int column, float leak)
-{
-    const uint32_t bits = row << 1;
-    const uint32_t left = bits >> (17 - column) & 1, here = bits >> (16 - column) & 1,
-                   right = bits >> (15 - column) & 1;
-    return (1 - 2 * leak) * (float)here + leak * (float)(left + right);
-}
-
-/* The blank word, blurred. Above and below the coding region there is a light row. */
+/* The blank word, blurred. All around the coding region there is a light module. */
 static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
 {
-    uint32_t rows[ROWS + 2] = {0};
-    for (int row = 0; row < ROWS; row++)
-        rows[row + 1] = dark ? 0xffffu & ~(uint32_t)tmi_light_rows[row] : tmi_dark_rows[row];
+    float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape */
     const float a = cells->leak_along, c = cells->leak_across;
-    for (int i = 0; i < CELLS; i++) {
-        const uint32_t *row = &rows[i / COLUMNS];
-        const int column = i % COLUMNS;
-        out[i] = c * (blurred_along(row[0], column, a) + blurred_along(row[2], column, a)) +
-                 (1 - 2 * c) * blurred_along(row[1], column, a);
+    for (int row = 0; row < ROWS; row++) {
+        float modules[COLUMNS + 2] = {0};
+        const uint32_t bits = dark ? 0xffffu & ~(uint32_t)tmi_light_rows[row] : tmi_dark_rows[row];
+        for (int column = 0; column < COLUMNS; column++)
+            modules[column + 1] = (float)(bits >> (COLUMNS - 1 - column) & 1);
+        for (int column = 0; column < COLUMNS; column++)
+            lines[row + 1][column] = (1 - 2 * a) * modules[column + 1] + a * (modules[column] + modules[column + 2]);
     }
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++)
+            out[row * COLUMNS + column] =
+                (1 - 2 * c) * lines[row + 1][column] + c * (lines[row][column] + lines[row + 2][column]);
 }
 
 static tmi_bump measure_bump(const tmi_cells *cells, const float *blank, int cell)
