@@ -52,7 +52,7 @@ void tmi_marker_map(const tmi_finder *left, const tmi_finder *right, tmi_homogra
 }
 
 /* Modules; where the finders lie this near to where the map has them, it is good. */
-static const float settled = 0.06f;
+static const float settled = 0.1f;
 
 void tmi_marker_refine(const tmi_view *view, const tmi_finder *left, const tmi_finder *right, tmi_homography *map,
                        uint32_t *reads)
