@@ -128,7 +128,8 @@ static bool code_on_line(const tmi_reader *reader, const tmi_segment *segment, i
     return true;
 }
 
-void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, tmi_tm_reading *out)
+bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float bars_min,
+                 tmi_tm_reading *out)
 {
     uint32_t *reads = &reader->result->stats.work;
     const int last = first + count - 1;
@@ -136,7 +137,11 @@ void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
     const tmi_bars_place right = {&segment->maps[last], &segment->finders[last + 1], PITCH, 1};
     float score_left, score_right;
     const float stretch_left = best_stretch(reader->view, left, &score_left, reads);
+    if (score_left < bars_min)
+        return false;
     const float stretch_right = best_stretch(reader->view, right, &score_right, reads);
+    if (score_right < bars_min)
+        return false;
     out->bars = real_min(score_left, score_right);
     uint32_t codes[LINES];
     int lines = 0, clear = 0;
@@ -160,4 +165,5 @@ void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
         }
     }
     out->vote = lines > LINES / 3 ? (float)most / (float)lines : 0;
+    return true;
 }

@@ -21,7 +21,9 @@ typedef struct tmi_bars_place {
 /* How much what is there looks like four bars, over the whole height of the tape; at most 1. */
 float tmi_bars_score(const tmi_view *view, tmi_bars_place place, uint32_t *reads);
 
-/* Reads the CMs first..first + count - 1 of the segment, as the row runs, on several lines across the tape. */
-void tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, tmi_tm_reading *out);
+/* Reads the CMs first..first + count - 1 of the segment, as the row runs, on several lines across the tape. False
+ * where there are no bars of that score at both ends. */
+bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float bars_min,
+                 tmi_tm_reading *out);
 
 #endif

@@ -264,21 +264,14 @@ static float vouched(const tapemark_reject *reasons, int first, int count)
     return read > 0 ? 0.5f + 0.5f * (float)read / (float)count : 1;
 }
 
-static bool has_bars(const tmi_reader *reader, tmi_bars_place place)
+/* Reads a part that lies in the image and has bars at both ends, and sets its corners. */
+static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
+                              bool turned, tapemark_point corners[4], tmi_tm_reading *reading)
 {
-    return tmi_bars_score(reader->view, place, &reader->result->stats.work) >= bars_min;
-}
-
-/* Whether bars stand at both ends of a part that lies in the image, corners set. */
-static bool ends_in_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count, bool turned,
-                         tapemark_point corners[4])
-{
-    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
     const float ink = 3.5f + TAPEMARK_BAR_MODULES;
+    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
     set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, corners);
-    return inside(reader->view, corners) &&
-           has_bars(reader, (tmi_bars_place){left, &segment->finders[first], 0, -1}) &&
-           has_bars(reader, (tmi_bars_place){right, &segment->finders[first + count], TAPEMARK_CM_PITCH_MODULES, 1});
+    return inside(reader->view, corners) && tmi_tm_read(reader, segment, first, count, bars_min, reading);
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
@@ -289,16 +282,15 @@ static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapem
     tapemark_result *result = reader->result;
     const bool turned = turn < 0;
     tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0};
+    tmi_tm_reading reading;
     /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
-    if (!ends_in_bars(reader, segment, first, count, turned, out.corners) &&
+    if (!read_between_bars(reader, segment, first, count, turned, out.corners, &reading) &&
         !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                        &result->stats.work) &&
-          ends_in_bars(reader, segment, first, count, turned, out.corners))) {
+          read_between_bars(reader, segment, first, count, turned, out.corners, &reading))) {
         result->stats.rejects[TAPEMARK_REJECT_BARS]++;
         return TMI_NONE;
     }
-    tmi_tm_reading reading;
-    tmi_tm_read(reader, segment, first, count, &reading);
     if (reading.vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading.code)) {
         result->stats
             .rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE : TAPEMARK_REJECT_CONFLICT]++;
@@ -381,6 +373,11 @@ static void read_part(const tmi_reader *reader, tmi_segment *segment, int first,
         reader->result->stats.cms_read++;
         report_cm(reader, segment, cm, turned, tm, slot);
     }
+}
+
+static bool has_bars(const tmi_reader *reader, tmi_bars_place place)
+{
+    return tmi_bars_score(reader->view, place, &reader->result->stats.work) >= bars_min;
 }
 
 /* Two pieces may hang so that the last finder of one is a CM's length from the first of the next: then there are

@@ -64,8 +64,8 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
 
 /* ---- Links between located finders ------------------------------------------------------------------------ */
 
-/* Perspective makes a pitch look shorter or longer in the modules of its one end, by 1.7 at the steepest angle at
- * which tapes can be read; and the sides of a finder of seven small pixels point off by up to 10 degrees. */
+/* Bounds with room for steep perspective, which makes a pitch look shorter or longer in the modules of its one end,
+ * and for the sides of a finder of seven small pixels, which point off by up to 10 degrees. */
 static bool may_be_a_pitch_away(tmi_point there)
 {
     return there.x > 0.6f * pitch && there.x < 1.7f * pitch && real_abs(there.y) < 0.18f * there.x;

@@ -23,8 +23,7 @@ static const float hopeless_gain = -0.9f;
  * it, words that add doubtful ones to the right word would crowd that off the list. */
 static const float one_cost = 0.35f;
 
-/* Correlations closer than this do not tell two words apart; then the caller's ids may. It is about half of the
- * smallest difference between a right word and the next one in readings with odds of 1.6. */
+/* Correlations closer than this do not tell two words apart; then the caller's ids may. */
 static const float known_id_bonus = 0.03f;
 
 /* Blur beyond which even without noise the right word may be missing on the shortlist: of both leaks together, or of
@@ -56,8 +55,8 @@ static float score_word(const tmi_evidence *e, const candidate *word)
 
 /* ---- Candidates -------------------------------------------------------------------------------------- */
 
-/* The data bits of which most is there, best first, each with the squared error that it takes off. Returns how many.
- */
+/* The data bits of which most is there, best first, each with the squared error that it takes off.
+ * Returns how many. */
 static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;

@@ -10,7 +10,7 @@ typedef struct tmi_reading {
     float odds;  /* what the second best word leaves unexplained, over what the best one does; 1 to 4 */
     uint8_t doubtful, corrected; /* cells; see tapemark_cm */
     uint8_t contrary;            /* cells that clearly show the opposite of what the word has there */
-    bool unknown;                /* a list of known ids was given, and this is none of them */
+    bool unknown;                /* it is none of the ids that may be read */
 } tmi_reading;
 
 /* 0 to 1: how much of the cells the word explains, and how much more than the next best one. */

@@ -255,3 +255,19 @@ size_t ids_for_code(const char *code, int32_t first, int32_t *ids)
         ids[i] = code[i] == '1' ? first + (int32_t)i : -(first + (int32_t)i);
     return count;
 }
+
+tmi_finder finder_near_end(const tmi_view *view, const tapemark_point c[4], bool right_end)
+{
+    const tmi_point left = {0.5f * (c[0].x_px + c[3].x_px), 0.5f * (c[0].y_px + c[3].y_px)};
+    const tmi_point right = {0.5f * (c[1].x_px + c[2].x_px), 0.5f * (c[1].y_px + c[2].y_px)};
+    const tmi_point end = right_end ? right : left;
+    const tapemark_point top = c[right_end ? 1 : 0];
+    tmi_finder f = {.right = {(right.x - left.x) / 32, (right.y - left.y) / 32},
+                    .down = {(end.x - top.x_px) / 3.5f, (end.y - top.y_px) / 3.5f}};
+    const float in = right_end ? -3.5f : 3.5f;
+    f.centre = (tmi_point){end.x + in * f.right.x, end.y + in * f.right.y};
+    uint32_t reads = 0;
+    tmi_finder_score(view, &f, &reads);
+    assert_true(tmi_finder_refine(view, &f, &reads));
+    return f;
+}

@@ -15,6 +15,7 @@
 
 #include <cmocka.h>
 
+#include "finder.h"
 #include "scene.h"
 #include "tapemark.h"
 
@@ -64,6 +65,10 @@ bool has_read(const decoding *got, int32_t id);
 
 /* CMs of the scene that are wholly in view and were read. */
 size_t count_read(const decoding *got);
+
+/* A finder pattern at the left or right end of a CM: from the middles of its ends, refined; good enough to be what
+ * the scan lines find. */
+tmi_finder finder_near_end(const tmi_view *view, const tapemark_point corners[4], bool right_end);
 
 /* Ids that ascend from `first`, negative where the code has a '0'. Returns how many. */
 size_t ids_for_code(const char *code, int32_t first, int32_t *ids);

@@ -20,25 +20,6 @@ typedef struct setting {
 
 static setting set;
 
-static tmi_point middle(tapemark_point a, tapemark_point b)
-{
-    return (tmi_point){0.5f * (a.x_px + b.x_px), 0.5f * (a.y_px + b.y_px)};
-}
-
-static tmi_finder finder_at(const tapemark_point c[4], bool right_end)
-{
-    const tmi_point left = middle(c[0], c[3]), right = middle(c[1], c[2]), end = right_end ? right : left;
-    const tapemark_point top = c[right_end ? 1 : 0];
-    tmi_finder f = {.right = {(right.x - left.x) / 32, (right.y - left.y) / 32},
-                    .down = {(end.x - top.x_px) / 3.5f, (end.y - top.y_px) / 3.5f}};
-    const float in = right_end ? -3.5f : 3.5f;
-    f.centre = (tmi_point){end.x + in * f.right.x, end.y + in * f.right.y};
-    uint32_t reads = 0;
-    tmi_finder_score(&set.view, &f, &reads);
-    assert_true(tmi_finder_refine(&set.view, &f, &reads));
-    return f;
-}
-
 static void render(scene view, scene_pose pose, bool bars)
 {
     scene_tape tape = scene_tape_of(ids, CMS, bars);
@@ -49,7 +30,7 @@ static void render(scene view, scene_pose pose, bool bars)
     assert_int_equal(set.truth.cm_count, CMS);
     set.view = (tmi_view){.pixels = set.pixels, .width = WIDTH, .height = HEIGHT, .stride = WIDTH, .sign = 1};
     for (int i = 0; i <= CMS; i++)
-        set.finders[i] = finder_at(set.truth.cms[i < CMS ? i : CMS - 1].corners, i == CMS);
+        set.finders[i] = finder_near_end(&set.view, set.truth.cms[i < CMS ? i : CMS - 1].corners, i == CMS);
 }
 
 static const scene_pose poses[] = {

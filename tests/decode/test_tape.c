@@ -20,27 +20,6 @@ typedef struct setting {
 
 static setting set;
 
-static tmi_point between(tapemark_point a, tapemark_point b)
-{
-    return (tmi_point){0.5f * (a.x_px + b.x_px), 0.5f * (a.y_px + b.y_px)};
-}
-
-/* From the middles of a CM's ends, refined: good enough to be what the scan lines find. */
-static tmi_finder finder_near_end(const tapemark_point c[4], bool right_end)
-{
-    const tmi_point left = between(c[0], c[3]), right = between(c[1], c[2]);
-    const tmi_point top = right_end ? (tmi_point){c[1].x_px, c[1].y_px} : (tmi_point){c[0].x_px, c[0].y_px};
-    const tmi_point end = right_end ? right : left;
-    tmi_finder f = {.right = {(right.x - left.x) / 32, (right.y - left.y) / 32},
-                    .down = {(end.x - top.x) / 3.5f, (end.y - top.y) / 3.5f}};
-    const float in = right_end ? -3.5f : 3.5f;
-    f.centre = (tmi_point){end.x + in * f.right.x, end.y + in * f.right.y};
-    uint32_t reads = 0;
-    tmi_finder_score(&set.view, &f, &reads);
-    assert_true(tmi_finder_refine(&set.view, &f, &reads));
-    return f;
-}
-
 static void render_tape(scene_pose pose)
 {
     scene view = scene_default(WIDTH, HEIGHT);
@@ -53,8 +32,8 @@ static void render_tape(scene_pose pose)
     assert_int_equal(truth.cm_count, CMS);
     set.view = (tmi_view){.pixels = set.pixels, .width = WIDTH, .height = HEIGHT, .stride = WIDTH, .sign = 1};
     for (int i = 0; i < CMS; i++)
-        set.finders[i] = finder_near_end(truth.cms[i].corners, false);
-    set.finders[CMS] = finder_near_end(truth.cms[CMS - 1].corners, true);
+        set.finders[i] = finder_near_end(&set.view, truth.cms[i].corners, false);
+    set.finders[CMS] = finder_near_end(&set.view, truth.cms[CMS - 1].corners, true);
     memset(&set.stats, 0, sizeof set.stats);
     set.tape.view = &set.view;
     set.tape.stats = &set.stats;
