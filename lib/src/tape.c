@@ -121,13 +121,23 @@ static void join(tmi_tape *tape, int i, int direction, int j, int direction_back
     tape->nodes[j].neighbour[direction_back] = (int16_t)i;
 }
 
+/* Joins those that are each other's best neighbour. */
 static void link_located(tmi_tape *tape)
 {
+    _Static_assert(TMI_MAX_FINDERS <= INT8_MAX + 1, "a finder's index fits a byte");
+    struct {
+        int8_t node, back;
+    } best[TMI_MAX_FINDERS][TMI_DIRECTIONS];
     for (int i = 0; i < tape->count; i++)
         for (int d = 0; d < TMI_DIRECTIONS; d++) {
-            int back = 0, again = 0;
-            const int j = best_neighbour(tape, i, d, &back);
-            if (j > i && best_neighbour(tape, j, back, &again) == i && again == d)
+            int back = 0;
+            best[i][d].node = (int8_t)best_neighbour(tape, i, d, &back);
+            best[i][d].back = (int8_t)back;
+        }
+    for (int i = 0; i < tape->count; i++)
+        for (int d = 0; d < TMI_DIRECTIONS; d++) {
+            const int j = best[i][d].node, back = best[i][d].back;
+            if (j > i && best[j][back].node == i && best[j][back].back == d)
                 join(tape, i, d, j, back);
         }
 }
