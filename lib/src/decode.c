@@ -45,7 +45,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 {
     if (!size_is_valid(width_px, height_px))
         return 0;
-    return 140000 + (uint32_t)width_px * (uint32_t)height_px / 25;
+    return 140000 + (uint32_t)width_px * (uint32_t)height_px / 30;
 }
 
 /* ---- From scan lines to finder patterns ---------------------------------------------------------------------- */
