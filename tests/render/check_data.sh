@@ -1,7 +1,7 @@
 #!/bin/sh
 # usage: check_data.sh DATA_DIRECTORY SCENE_RENDER...
 #
-# Runs the scene-render commands in the README of the data directory again, in a directory of their own, and
+# Runs the tapemark-render commands in the README of the data directory again, in a directory of their own, and
 # compares: every file there is must come out as it is. Another compiler or C library may round a value the other
 # way, so one byte in a thousand may differ.
 set -eu
@@ -18,18 +18,18 @@ cd "$work"
 commands=0
 while read -r line || [ -n "$line" ]; do
     case $line in
-    *scene-render*.raw | *scene-render*.y4m | *scene-render*.pgm) ;;
+    *tapemark-render*.raw | *tapemark-render*.y4m | *tapemark-render*.pgm) ;;
     *) continue ;;
     esac
     # Neither quotes nor patterns are used in the commands: plain splitting takes them apart.
     # shellcheck disable=SC2086
-    "$@" ${line#*scene-render }
+    "$@" ${line#*tapemark-render }
     commands=$((commands + 1))
 done <<COMMANDS
 $(sed -e ':join' -e '/\\$/{N' -e 's/\\\n */ /' -e 'b join' -e '}' "$data/README.md")
 COMMANDS
 if [ "$commands" -eq 0 ]; then
-    echo "README.md: found no scene-render commands" >&2
+    echo "README.md: found no tapemark-render commands" >&2
     exit 1
 fi
 

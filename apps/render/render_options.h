@@ -1,4 +1,4 @@
-/* The command line of scene-render. */
+/* The command line of tapemark-render. */
 #ifndef SCENE_RENDER_OPTIONS_H
 #define SCENE_RENDER_OPTIONS_H
 

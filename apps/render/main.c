@@ -1,4 +1,4 @@
-/* scene-render: writes rendered camera views of tapes, with the truth about them. */
+/* tapemark-render: writes rendered camera views of tapes, with the truth about them. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ static bool write_frame(const render_options *all, const scene *view, int frame,
                                     (size_t)all->stride_bytes);
     free(samples);
     if (!done)
-        fputs("scene-render: out of memory\n", stderr);
+        fputs("tapemark-render: out of memory\n", stderr);
     else if (truth_file != NULL)
         truth_json_frame(truth_file, frame, view, &truth);
     return done;
@@ -63,7 +63,7 @@ static FILE *open_for_writing(const char *path)
 {
     FILE *file = fopen(path, "wb");
     if (file == NULL)
-        fprintf(stderr, "scene-render: %s: %s\n", path, strerror(errno));
+        fprintf(stderr, "tapemark-render: %s: %s\n", path, strerror(errno));
     return file;
 }
 
@@ -71,7 +71,7 @@ static bool close_written(FILE *file, const char *path)
 {
     bool failed = ferror(file) != 0;
     if (fclose(file) != 0 || failed) {
-        fprintf(stderr, "scene-render: %s: cannot be written: %s\n", path, strerror(errno));
+        fprintf(stderr, "tapemark-render: %s: cannot be written: %s\n", path, strerror(errno));
         return false;
     }
     return true;

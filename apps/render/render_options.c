@@ -6,7 +6,7 @@
 #include <string.h>
 
 const char render_usage[] =
-    "usage: scene-render [OPTION VALUE]... OUTPUT\n"
+    "usage: tapemark-render [OPTION VALUE]... OUTPUT\n"
     "Renders a camera's view of a tape, or of a whole walk past some, into OUTPUT.\n"
     "\n"
     "  --scene frame|walk   one picture of one tape (default), or a cart's way along a wall\n"
@@ -36,7 +36,7 @@ const char render_usage[] =
 
 static void complain(const char *option, const char *value, const char *right)
 {
-    fprintf(stderr, "scene-render: %s: \"%s\": expected %s\n", option, value, right);
+    fprintf(stderr, "tapemark-render: %s: \"%s\": expected %s\n", option, value, right);
 }
 
 static bool parse_number(const char *option, const char *value, double *number)
@@ -90,7 +90,7 @@ static bool parse_choice(const char *option, const char *value, const char *cons
         if (strcmp(names[*choice], value) == 0)
             return true;
     }
-    fprintf(stderr, "scene-render: %s: \"%s\": expected one of", option, value);
+    fprintf(stderr, "tapemark-render: %s: \"%s\": expected one of", option, value);
     for (size_t i = 0; i < count; i++)
         fprintf(stderr, " %s", names[i]);
     fputc('\n', stderr);
@@ -124,7 +124,7 @@ static bool parse_format(render_options *all, const char *value)
 {
     all->format = capture_format_find(value);
     if (all->format == NULL)
-        fprintf(stderr, "scene-render: --format: \"%s\": expected one of %s\n", value, capture_format_names());
+        fprintf(stderr, "tapemark-render: --format: \"%s\": expected one of %s\n", value, capture_format_names());
     return all->format != NULL;
 }
 
@@ -188,7 +188,7 @@ static bool parse_option(render_options *all, const char *option, const char *va
         all->truth_path = value;
         return true;
     }
-    fprintf(stderr, "scene-render: %s: no such option; see scene-render --help\n", option);
+    fprintf(stderr, "tapemark-render: %s: no such option; see tapemark-render --help\n", option);
     return false;
 }
 
@@ -202,7 +202,7 @@ static bool whole_within(const char *option, double value, double least, double 
 {
     if (value >= least && value <= most && value == (double)(int64_t)value)
         return true;
-    fprintf(stderr, "scene-render: %s: expected a whole number from %.0f to %.0f\n", option, least, most);
+    fprintf(stderr, "tapemark-render: %s: expected a whole number from %.0f to %.0f\n", option, least, most);
     return false;
 }
 
@@ -213,7 +213,7 @@ static bool choose_format(render_options *all)
     if (all->format == NULL && ends_in(all->output_path, ".y4m"))
         all->format = capture_format_find("Y4M");
     if (all->format == NULL)
-        fprintf(stderr, "scene-render: %s: ends neither in .pgm nor in .y4m: say --format\n", all->output_path);
+        fprintf(stderr, "tapemark-render: %s: ends neither in .pgm nor in .y4m: say --format\n", all->output_path);
     return all->format != NULL;
 }
 
@@ -225,7 +225,7 @@ static bool choose_stride(render_options *all)
         all->stride_bytes = least;
     if (all->stride_bytes == least || (all->stride_bytes > least && may_be_longer))
         return true;
-    fprintf(stderr, "scene-render: --stride: a row of %d px of %s is %s%.0f bytes\n", (int)all->view.width_px,
+    fprintf(stderr, "tapemark-render: --stride: a row of %d px of %s is %s%.0f bytes\n", (int)all->view.width_px,
             all->format->name, may_be_longer ? "at least " : "", least);
     return false;
 }
@@ -238,12 +238,12 @@ static bool complete(render_options *all)
         !whole_within("--stride", all->stride_bytes, 0, 1e6) || !choose_stride(all))
         return false;
     if (!capture_fits(all->format, all->view.width_px, all->view.height_px)) {
-        fprintf(stderr, "scene-render: --size: %s comes in groups of pixels: sides must be multiples of 4\n",
+        fprintf(stderr, "tapemark-render: --size: %s comes in groups of pixels: sides must be multiples of 4\n",
                 all->format->name);
         return false;
     }
     if (!all->walk && !(all->pose.px_per_module > 0.01 && all->pose.px_per_module < 1e4)) {
-        fputs("scene-render: --px-per-module: expected 0.01 to 10000\n", stderr);
+        fputs("tapemark-render: --px-per-module: expected 0.01 to 10000\n", stderr);
         return false;
     }
     all->view.seed = (uint64_t)all->seed;
@@ -251,7 +251,7 @@ static bool complete(render_options *all)
     all->view.camera.focal_px = all->focal_px == 0 ? all->view.width_px : all->focal_px;
     const char *problem = scene_problem(&all->view);
     if (problem != NULL)
-        fprintf(stderr, "scene-render: %s\n", problem);
+        fprintf(stderr, "tapemark-render: %s\n", problem);
     return problem == NULL;
 }
 
@@ -265,7 +265,7 @@ bool render_options_parse(render_options *all, int argc, char **argv)
             return false;
     }
     if (at != argc - 1 || argv[at][0] == '-') {
-        fputs("scene-render: expected options, each with a value, and one OUTPUT; see scene-render --help\n", stderr);
+        fputs("tapemark-render: expected options, each with a value, and one OUTPUT; see tapemark-render --help\n", stderr);
         return false;
     }
     all->output_path = argv[at];

@@ -1,0 +1,48 @@
+/*
+ * What a user wants a tape for: a room, and lines along which tape is to be stuck.
+ *
+ * The plan is seen from above: x to the right, y down, in metres from its top left corner, as pictures have it. A
+ * tape along a line reads from the line's first point to its second. On a wall it faces the side that lies to the
+ * right of that direction as the plan shows it (a line from left to right along the upper wall of a room faces into
+ * the room); on the floor, that is where its lower edge lies.
+ */
+#ifndef MAKE_PLAN_H
+#define MAKE_PLAN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "error_text.h"
+
+typedef struct plan_point {
+    double x_m, y_m;
+} plan_point;
+
+typedef enum plan_mount { PLAN_ON_WALL, PLAN_ON_FLOOR } plan_mount;
+
+typedef struct plan_line {
+    plan_point from, to;
+    plan_mount mount;
+    double above_floor_m;  /* of the tape's middle, on a wall; 0 on the floor */
+} plan_line;
+
+typedef struct plan {
+    double width_m, height_m;  /* of the room */
+    double module_mm;
+    int32_t first_id;          /* 0 or more */
+    unsigned tm_cms;           /* CMs of the TMs that are laid first, 3 to 32 */
+    unsigned tm_cms_max;       /* how long they may become when codes run out, tm_cms to 32 */
+    bool tm_required;          /* a stretch that holds tm_cms CMs, and for which there is no code, is an error */
+    bool camera_upright;       /* cameras know which way is up: mirrored codes may be used, too */
+    char *background_path;     /* a picture of the floor, for the preview; or NULL */
+    plan_line *lines;
+    size_t line_count;
+} plan;
+
+/* Reads and checks a plan file. False when it is wrong, with the place in it. The caller releases the plan. */
+bool plan_read(const char *path, plan *wanted, error_text *error);
+
+void plan_release(plan *wanted);
+
+#endif
