@@ -18,27 +18,42 @@ static bool id_has(int32_t id, const char *word_text, const char *checksum_text)
            (checksum_text == NULL || strcmp(checksum_text, checksum_bits) == 0);
 }
 
+static int compare_entries(const void *left, const void *right)
+{
+    int32_t a = ((const place_entry *)left)->id, b = ((const place_entry *)right)->id;
+    return (a > b) - (a < b);
+}
+
 bool places_load(const char *map_path, places *loaded, error_text *error)
 {
-    loaded->ids = NULL;
+    *loaded = (places){0};
     if (!map_file_read(map_path, id_has, &loaded->map, error))
         return false;
-    loaded->ids = malloc(loaded->map.cm_count * sizeof *loaded->ids);
-    if (loaded->ids == NULL) {
+    const tape_map *map = &loaded->map;
+    loaded->entries = malloc(map->cm_count * sizeof *loaded->entries);
+    loaded->ids = malloc(map->cm_count * sizeof *loaded->ids);
+    if (loaded->entries == NULL || loaded->ids == NULL) {
         error_text_set(error, "not enough memory for the ids of the map");
-        tape_map_release(&loaded->map);
+        places_release(loaded);
         return false;
     }
-    for (size_t i = 0; i < loaded->map.cm_count; i++)
-        loaded->ids[i] = loaded->map.cms[i].id;
+    for (size_t segment = 0; segment < map->segment_count; segment++) {
+        size_t first = map->segments[segment].first_cm;
+        for (size_t i = first; i < first + map->segments[segment].cm_count; i++)
+            loaded->entries[i] = (place_entry){map->cms[i].id, i, segment};
+    }
+    qsort(loaded->entries, map->cm_count, sizeof *loaded->entries, compare_entries);
+    for (size_t i = 0; i < map->cm_count; i++)
+        loaded->ids[i] = loaded->entries[i].id;
     return true;
 }
 
 void places_release(places *loaded)
 {
     tape_map_release(&loaded->map);
+    free(loaded->entries);
     free(loaded->ids);
-    loaded->ids = NULL;
+    *loaded = (places){0};
 }
 
 void places_configure(const places *known, tapemark_config *config)
@@ -47,28 +62,39 @@ void places_configure(const places *known, tapemark_config *config)
     config->known_id_count = known->map.cm_count;
 }
 
-bool places_find_cm(const places *known, int32_t id, plan_point *point)
+static const place_entry *find_entry(const places *known, int32_t id)
 {
-    const map_cm *cm = known != NULL ? tape_map_find_cm(&known->map, id) : NULL;
-    if (cm != NULL)
-        *point = (plan_point){cm->x_m, cm->y_m};
-    return cm != NULL;
+    place_entry wanted = {.id = id};
+    return bsearch(&wanted, known->entries, known->map.cm_count, sizeof wanted, compare_entries);
 }
 
-/* The TM that all CMs read in this one belong to. False when no CM was read in it; *found is MAP_NO_TM when they
- * belong to none or to several. */
-static bool find_by_cms(const tape_map *map, const tapemark_result *result, size_t tm_index, int32_t *found)
+bool places_find_cm(const places *known, int32_t id, map_point *point)
+{
+    const place_entry *entry = known != NULL ? find_entry(known, id) : NULL;
+    if (entry != NULL)
+        *point = known->map.cms[entry->cm].centre;
+    return entry != NULL;
+}
+
+static bool is_tm(const tape_map *map, size_t segment)
+{
+    return map->segments[segment].code[0] != '\0';
+}
+
+/* The TM that all CMs read in this one belong to. False when no CM was read in it; *found is the number of segments
+ * when they belong to none or to several. */
+static bool find_by_cms(const places *known, const tapemark_result *result, size_t tm_index, size_t *found)
 {
     bool any = false;
     for (size_t i = 0; i < result->cm_count; i++) {
-        const map_cm *cm;
-        if (result->cms[i].tm != (int16_t)tm_index || (cm = tape_map_find_cm(map, result->cms[i].id)) == NULL)
+        const place_entry *entry;
+        if (result->cms[i].tm != (int16_t)tm_index || (entry = find_entry(known, result->cms[i].id)) == NULL)
             continue;
-        if (any && cm->tm != *found) {
-            *found = MAP_NO_TM;
+        if (!is_tm(&known->map, entry->segment) || (any && entry->segment != *found)) {
+            *found = known->map.segment_count;
             return true;
         }
-        *found = cm->tm;
+        *found = entry->segment;
         any = true;
     }
     return any;
@@ -87,28 +113,29 @@ static bool codes_match(const char *mapped, const tapemark_tm *tm)
     return true;
 }
 
-static int32_t find_by_code(const tape_map *map, const tapemark_tm *tm)
+static size_t find_by_code(const tape_map *map, const tapemark_tm *tm)
 {
-    int32_t found = MAP_NO_TM;
-    for (size_t i = 0; i < map->tm_count; i++) {
-        if (!codes_match(map->tms[i].code, tm))
+    size_t found = map->segment_count;
+    for (size_t i = 0; i < map->segment_count; i++) {
+        if (!codes_match(map->segments[i].code, tm))
             continue;
-        if (found != MAP_NO_TM)
-            return MAP_NO_TM;
-        found = (int32_t)i;
+        if (found != map->segment_count)
+            return map->segment_count;
+        found = i;
     }
     return found;
 }
 
-bool places_find_tm(const places *known, const tapemark_result *result, size_t tm_index, plan_point *point)
+bool places_find_tm(const places *known, const tapemark_result *result, size_t tm_index, map_point *point)
 {
-    int32_t found;
+    size_t found;
     if (known == NULL)
         return false;
-    if (!find_by_cms(&known->map, result, tm_index, &found))
+    if (!find_by_cms(known, result, tm_index, &found))
         found = find_by_code(&known->map, &result->tms[tm_index]);
-    if (found == MAP_NO_TM || !known->map.tms[found].complete)
+    if (found == known->map.segment_count || !known->map.segments[found].complete)
         return false;
-    *point = (plan_point){known->map.tms[found].x_m, known->map.tms[found].y_m};
+    const map_segment *segment = &known->map.segments[found];
+    *point = (map_point){(segment->start.x_m + segment->end.x_m) / 2, (segment->start.y_m + segment->end.y_m) / 2};
     return true;
 }

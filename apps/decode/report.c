@@ -64,7 +64,7 @@ static void add_json_member(text_buffer *buffer, const char *key, double number,
     text_buffer_add_json_number(buffer, number, decimals);
 }
 
-static void add_json_place(text_buffer *buffer, bool found, plan_point point)
+static void add_json_place(text_buffer *buffer, bool found, map_point point)
 {
     if (!found)
         return;
@@ -74,7 +74,7 @@ static void add_json_place(text_buffer *buffer, bool found, plan_point point)
 
 static void add_json_cm(text_buffer *buffer, const frame_report *report, const tapemark_cm *cm)
 {
-    plan_point point = {0, 0};
+    map_point point = {0, 0};
     text_buffer_add(buffer, "{\"type\":\"cm\",\"id\":%d", cm->id);
     add_json_corners(buffer, cm->corners);
     add_json_member(buffer, "confidence", (double)cm->confidence, SHARE_DECIMALS);
@@ -90,7 +90,7 @@ static void add_json_tm(text_buffer *buffer, const frame_report *report, size_t 
     const tapemark_tm *tm = &report->result->tms[index];
     size_t cms[TAPEMARK_TM_MAX_CMS];
     size_t count = report_list_cms(report->result, index, cms);
-    plan_point point = {0, 0};
+    map_point point = {0, 0};
 
     text_buffer_add(buffer, "{\"type\":\"tm\",\"code\":\"%s\",\"directed\":%s", tm->code,
                     tm->directed ? "true" : "false");
@@ -167,7 +167,7 @@ static void add_csv_numbers(text_buffer *buffer, const tapemark_point corners[4]
     text_buffer_add(buffer, ",%.*f,", SHARE_DECIMALS, (double)confidence);
 }
 
-static void add_csv_place(text_buffer *buffer, bool found, plan_point point)
+static void add_csv_place(text_buffer *buffer, bool found, map_point point)
 {
     if (found)
         text_buffer_add(buffer, ",%.*f,%.*f\n", METRE_DECIMALS, point.x_m, METRE_DECIMALS, point.y_m);
@@ -187,7 +187,7 @@ static void add_cm_ids(text_buffer *buffer, const char *before, const tapemark_r
 void report_add_csv(text_buffer *buffer, const frame_report *report)
 {
     const tapemark_result *result = report->result;
-    plan_point point = {0, 0};
+    map_point point = {0, 0};
     for (size_t i = 0; i < result->cm_count; i++) {
         const tapemark_cm *cm = &result->cms[i];
         add_csv_start(buffer, report);
@@ -216,7 +216,7 @@ static void add_text_line(text_buffer *buffer, const frame_report *report, const
                     (double)confidence);
 }
 
-static void add_text_place(text_buffer *buffer, bool found, plan_point point)
+static void add_text_place(text_buffer *buffer, bool found, map_point point)
 {
     if (found)
         text_buffer_add(buffer, ", on the plan at (%.2f m, %.2f m)", point.x_m, point.y_m);
@@ -227,7 +227,7 @@ void report_add_text(text_buffer *buffer, const frame_report *report)
 {
     const tapemark_result *result = report->result;
     char what[TAPEMARK_TM_MAX_CMS + 40];
-    plan_point point = {0, 0};
+    map_point point = {0, 0};
     for (size_t i = 0; i < result->cm_count; i++) {
         const tapemark_cm *cm = &result->cms[i];
         snprintf(what, sizeof what, "CM %d", cm->id);

@@ -22,7 +22,7 @@ static void expect_error(const char *text, const char *reason)
     assert_false(read_map(text, &loaded, &error));
     assert_non_null(strstr(error.text, reason));
     assert_null(loaded.map.cms);
-    assert_null(loaded.map.tms);
+    assert_null(loaded.map.segments);
 }
 
 #define ZEROS_7 "0000000"
@@ -49,9 +49,9 @@ static void good_map_is_sorted_by_ids(void **state)
     places_configure(&loaded, &config);
     assert_int_equal(config.known_id_count, COUNT_OF(ids));
     assert_memory_equal(config.known_ids, ids, sizeof ids);
-    assert_int_equal(loaded.map.tm_count, 4);
+    assert_int_equal(loaded.map.segment_count, 6);
 
-    plan_point point;
+    map_point point;
     assert_true(places_find_cm(&loaded, 40, &point));
     assert_true(point.x_m == 9.5 && point.y_m == -1);
     assert_true(places_find_cm(&loaded, -40, &point));
@@ -85,7 +85,7 @@ static void malformed_maps_name_the_place(void **state)
     expect_error("[" ALONE(1, 0, 0) "] ]", "not valid JSON");
     expect_error("{}", "expected an array");
     expect_error("[]", "expected an array");
-    expect_error("[3]", "entry 1: \"idcm_decimal\"");
+    expect_error("[3]", "entry 1: must be an object");
     expect_error("[" ALONE(1, 0, 0) ",{\"x\":1,\"y\":2}]", "entry 2: \"idcm_decimal\"");
     expect_error("[" ALONE(1.5, 0, 0) "]", "entry 1: \"idcm_decimal\"");
     expect_error("[" ALONE(1505583, 0, 0) "]", "entry 1: \"idcm_decimal\"");
@@ -138,15 +138,14 @@ static void numbers_of_tms_may_be_numbers(void **state)
     (void)state;
     assert_true(read_map("[{\"idcm_decimal\":1,\"x\":0,\"y\":0,\"idtm\":\"111\",\"n_tm\":7},"
                          "{\"idcm_decimal\":2,\"x\":0,\"y\":0,\"idtm\":\"111\",\"n_tm\":8}]", &loaded, &error));
-    assert_int_equal(loaded.map.tm_count, 2);
-    assert_int_not_equal(loaded.map.cms[0].tm, loaded.map.cms[1].tm);
+    assert_int_equal(loaded.map.segment_count, 2);
     places_release(&loaded);
 }
 
 /* ---- Where a TM is ------------------------------------------------------------------------------------------- */
 
 /* Looks up a TM in which CMs with these ids were read. */
-static bool find_tm(const char *code, bool directed, const int32_t *ids, size_t id_count, plan_point *point)
+static bool find_tm(const char *code, bool directed, const int32_t *ids, size_t id_count, map_point *point)
 {
     places loaded;
     error_text error;
@@ -164,7 +163,7 @@ static bool find_tm(const char *code, bool directed, const int32_t *ids, size_t 
 
 static void tm_is_found_by_its_code(void **state)
 {
-    plan_point point;
+    map_point point;
     (void)state;
     assert_true(find_tm("100", true, NULL, 0, &point));
     assert_true(point.x_m == 2 && point.y_m == 2);
@@ -183,7 +182,7 @@ static void tm_is_found_by_its_code(void **state)
 static void tm_is_found_by_its_cms(void **state)
 {
     static const int32_t of_a[] = {-2, -3}, of_two[] = {-2, -4}, alone[] = {40}, unknown_and_b[] = {12, 6};
-    plan_point point;
+    map_point point;
     (void)state;
     assert_true(find_tm("100", false, of_a, 2, &point));
     assert_true(point.x_m == 2 && point.y_m == 2);
@@ -197,7 +196,7 @@ static void tm_is_found_by_its_cms(void **state)
 static void tm_that_is_not_wholly_on_the_map_has_no_middle(void **state)
 {
     static const int32_t ids[] = {11};
-    plan_point point;
+    map_point point;
     (void)state;
     assert_false(find_tm("11110", true, NULL, 0, &point));
     assert_false(find_tm("11110", true, ids, 1, &point));
