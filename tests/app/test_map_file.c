@@ -84,7 +84,7 @@ static void malformed_maps_name_the_place(void **state)
     expect_error("[" ALONE(1, 0, 0), "ends too early at line 1");
     expect_error("[" ALONE(1, 0, 0) "] ]", "not valid JSON");
     expect_error("{}", "expected an array");
-    expect_error("[]", "expected an array");
+    expect_error("[]", "without code markers");
     expect_error("[3]", "entry 1: must be an object");
     expect_error("[" ALONE(1, 0, 0) ",{\"x\":1,\"y\":2}]", "entry 2: \"idcm_decimal\"");
     expect_error("[" ALONE(1.5, 0, 0) "]", "entry 1: \"idcm_decimal\"");
