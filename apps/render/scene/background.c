@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "elementary.h"
 #include "geometry.h"
 #include "random.h"
 
@@ -118,8 +119,8 @@ static module_pattern *const patterns[SCENE_CLUTTER_COUNT] = {
 static void paint_pattern(const scene *view, module_pattern *dark_at, canvas *picture)
 {
     const scene_background *background = &view->background;
-    double cosine = cos(radians(background->angle_deg)) / background->scale_px;
-    double sine = sin(radians(background->angle_deg)) / background->scale_px;
+    const direction axis = direction_of(background->angle_deg);
+    double cosine = axis.x / background->scale_px, sine = axis.y / background->scale_px;
     for (int32_t y = 0; y < picture->height_px; y++) {
         float *row = canvas_row(picture, y);
         for (int32_t x = 0; x < picture->width_px; x++) {
@@ -183,7 +184,8 @@ static bool paint_popcorn(const scene *view, canvas *picture)
 /* Shade of a wall or floor at a place on it: never quite even. */
 static double uneven(double shade, double a_m, double b_m)
 {
-    return shade * (1 + 0.03 * sin(1.7 * a_m + 0.6) + 0.02 * cos(2.3 * b_m));
+    const double degrees = 180 / 3.14159265358979323846;
+    return shade * (1 + 0.03 * direction_of(degrees * (1.7 * a_m + 0.6)).y + 0.02 * direction_of(degrees * 2.3 * b_m).x);
 }
 
 static double room_shade(const scene_background *background, scene_vector from, scene_vector ray)

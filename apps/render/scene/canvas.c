@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary.h"
+
 bool canvas_create(canvas *picture, int32_t width_px, int32_t height_px)
 {
     picture->width_px = width_px;
@@ -55,8 +57,7 @@ bool canvas_convolve(canvas *picture, const canvas_tap *taps, size_t tap_count)
 /* Share of a Gaussian that falls on the pixel `distance` away. */
 static double gaussian_share(double distance_px, double sigma_px)
 {
-    double scale = 1 / (sigma_px * sqrt(2));
-    return 0.5 * (erf((distance_px + 0.5) * scale) - erf((distance_px - 0.5) * scale));
+    return normal_share_below((distance_px + 0.5) / sigma_px) - normal_share_below((distance_px - 0.5) / sigma_px);
 }
 
 bool canvas_blur(canvas *picture, double sigma_px)

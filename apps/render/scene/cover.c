@@ -3,15 +3,15 @@
 #include <math.h>
 
 #include "degrade.h"
-#include "geometry.h"
+#include "elementary.h"
 #include "random.h"
 
 static bool is_under(const scene_cover *cover, double x_px, double y_px)
 {
     double dx = x_px - cover->x_px, dy = y_px - cover->y_px;
-    double cosine = cos(radians(cover->angle_deg)), sine = sin(radians(cover->angle_deg));
-    return fabs(cosine * dx + sine * dy) <= cover->width_px / 2 &&
-           fabs(cosine * dy - sine * dx) <= cover->height_px / 2;
+    const direction axis = direction_of(cover->angle_deg);
+    return fabs(axis.x * dx + axis.y * dy) <= cover->width_px / 2 &&
+           fabs(axis.x * dy - axis.y * dx) <= cover->height_px / 2;
 }
 
 bool covered_at(const scene *view, double x_px, double y_px)

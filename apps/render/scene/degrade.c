@@ -2,14 +2,14 @@
 
 #include <math.h>
 
-#include "geometry.h"
+#include "elementary.h"
 #include "random.h"
 
 static const double full_well = 255;
 
 double light_of_shade(double shade, double gamma)
 {
-    return full_well * pow(fmin(fmax(shade / full_well, 0), 1), gamma);
+    return full_well * power(fmin(fmax(shade / full_well, 0), 1), gamma);
 }
 
 double shade_of_light(double light, double gamma)
@@ -19,15 +19,6 @@ double shade_of_light(double light, double gamma)
 
 /* ---- Light --------------------------------------------------------------------------------------------- */
 
-typedef struct direction {
-    double x, y;
-} direction;
-
-static direction direction_of(double angle_deg)
-{
-    return (direction){cos(radians(angle_deg)), sin(radians(angle_deg))};
-}
-
 void apply_light(const scene_light *light, canvas *picture)
 {
     if (light->gradient == 0 && light->shadow_depth == 0)
@@ -35,7 +26,7 @@ void apply_light(const scene_light *light, canvas *picture)
 
     const direction brighter = direction_of(light->gradient_deg), into_shadow = direction_of(light->shadow_deg);
     double centre_x = (picture->width_px - 1) / 2.0, centre_y = (picture->height_px - 1) / 2.0;
-    double slope = light->gradient / hypot(picture->width_px, picture->height_px);
+    double slope = light->gradient / length_2d(picture->width_px, picture->height_px);
     double soft_px = fmax(light->shadow_soft_px, 1);
     for (int32_t y = 0; y < picture->height_px; y++) {
         float *row = canvas_row(picture, y);

@@ -2,16 +2,13 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 /* Nearer than this counts as behind the camera; in metres times focal lengths, far below any real depth. */
 static const double least_depth = 1e-6;
 
 /* Of a tape to be seen; the area of a module in the image times the third power of its depth. */
 static const double least_determinant = 1e-12;
-
-double radians(double degrees)
-{
-    return degrees * (3.14159265358979323846 / 180);
-}
 
 static scene_vector blend(double a, scene_vector u, double b, scene_vector v)
 {
@@ -20,15 +17,16 @@ static scene_vector blend(double a, scene_vector u, double b, scene_vector v)
 
 matrix camera_axes(const scene_camera *camera)
 {
-    double yaw = radians(camera->yaw_deg), pitch = radians(camera->pitch_deg), roll = radians(camera->roll_deg);
-    scene_vector right = {cos(yaw), 0, -sin(yaw)};
-    scene_vector ahead = {sin(yaw), 0, cos(yaw)};
+    const direction yaw = direction_of(camera->yaw_deg), pitch = direction_of(camera->pitch_deg);
+    const direction roll = direction_of(camera->roll_deg);
+    scene_vector right = {yaw.x, 0, -yaw.y};
+    scene_vector ahead = {yaw.y, 0, yaw.x};
     scene_vector down = {0, 1, 0};
 
-    scene_vector pitched_ahead = blend(cos(pitch), ahead, -sin(pitch), down);
-    scene_vector pitched_down = blend(cos(pitch), down, sin(pitch), ahead);
-    scene_vector rolled_right = blend(cos(roll), right, sin(roll), pitched_down);
-    scene_vector rolled_down = blend(cos(roll), pitched_down, -sin(roll), right);
+    scene_vector pitched_ahead = blend(pitch.x, ahead, -pitch.y, down);
+    scene_vector pitched_down = blend(pitch.x, down, pitch.y, ahead);
+    scene_vector rolled_right = blend(roll.x, right, roll.y, pitched_down);
+    scene_vector rolled_down = blend(roll.x, pitched_down, -roll.y, right);
     return (matrix){{{rolled_right.x, rolled_right.y, rolled_right.z},
                      {rolled_down.x, rolled_down.y, rolled_down.z},
                      {pitched_ahead.x, pitched_ahead.y, pitched_ahead.z}}};
@@ -155,6 +153,6 @@ local_scale scale_at(const matrix *to_image, double along, double across)
     double d = (to_image->at[1][1] - y * to_image->at[2][1]) / p.z;
 
     /* Singular values of [a b; c d] from their sum and their difference. */
-    double sum = hypot(a + d, c - b), difference = hypot(a - d, c + b);
-    return (local_scale){hypot(a, c), hypot(b, d), fabs(sum - difference) / 2};
+    double sum = length_2d(a + d, c - b), difference = length_2d(a - d, c + b);
+    return (local_scale){length_2d(a, c), length_2d(b, d), fabs(sum - difference) / 2};
 }

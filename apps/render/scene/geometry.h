@@ -39,6 +39,4 @@ typedef struct local_scale {
 
 local_scale scale_at(const matrix *to_image, double along, double across);
 
-double radians(double degrees);
-
 #endif
