@@ -1,3 +1,6 @@
+/* realpath() is one of the X/Open extensions. */
+#define _XOPEN_SOURCE 700
+
 #include "output_file.h"
 
 #include <errno.h>
