@@ -99,6 +99,11 @@ cJSON *json_file_read(const char *path, error_text *error)
 
 /* ---- Members ------------------------------------------------------------------------------------------------- */
 
+bool json_has(const cJSON *object, const char *key)
+{
+    return cJSON_GetObjectItemCaseSensitive(object, key) != NULL;
+}
+
 bool json_get_number(const cJSON *object, const char *key, double *number)
 {
     const cJSON *member = cJSON_GetObjectItemCaseSensitive(object, key);

@@ -16,6 +16,8 @@ enum { JSON_FILE_BYTES_MAX = 128 << 20, JSON_FILE_VALUES_MAX = 8000000, JSON_FIL
  * caller deletes what it gets. */
 cJSON *json_file_read(const char *path, error_text *error);
 
+bool json_has(const cJSON *object, const char *key);
+
 /* False when there is no such key, or its value is no number. Numbers beyond those of double become infinite. */
 bool json_get_number(const cJSON *object, const char *key, double *number);
 

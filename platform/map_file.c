@@ -11,9 +11,14 @@ bool map_file_read(const char *path, map_id_check check_id, tape_map *map, error
     cJSON *root = json_file_read(path, error);
     if (root == NULL)
         return false;
-    bool done = cJSON_IsArray(root) && map_read_paper(root, check_id, map, error);
-    if (!cJSON_IsArray(root))
-        error_text_set(error, "is no map: expected an array of code markers");
+    bool done = false;
+    if (cJSON_IsObject(root))
+        done = map_read_own(root, check_id, map, error);
+    else if (cJSON_IsArray(root))
+        done = map_read_paper(root, check_id, map, error);
+    else
+        error_text_set(error, "is no map: expected an object with \"format\": \"%s\", or an array of code markers",
+                       MAP_FORMAT_NAME);
     if (!done)
         tape_map_release(map);
     cJSON_Delete(root);

@@ -114,7 +114,7 @@ static bool read_tm(const cJSON *item, map_entry *entry, error_text *error)
 static bool read_plan(const cJSON *item, tape_map *map, const map_entry *entry, error_text *error)
 {
     double width_m = 0, height_m = 0;
-    bool given = cJSON_HasObjectItem(item, "largura") || cJSON_HasObjectItem(item, "altura");
+    bool given = json_has(item, "largura") || json_has(item, "altura");
     if (given && !(json_get_number(item, "largura", &width_m) && json_get_number(item, "altura", &height_m) &&
                    width_m > 0 && width_m <= MAP_COORDINATE_MAX_M && height_m > 0 &&
                    height_m <= MAP_COORDINATE_MAX_M)) {

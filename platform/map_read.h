@@ -6,6 +6,10 @@
 
 #include <cjson/cJSON.h>
 
+/* What the files say of themselves. */
+#define MAP_FORMAT_NAME "tapemark-map"
+enum { MAP_FORMAT_VERSION = 1 };
+
 /* The plan of the largest hall is smaller. */
 #define MAP_COORDINATE_MAX_M 1e6
 
