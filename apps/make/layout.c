@@ -84,7 +84,8 @@ static bool reserve(laying *all, size_t cm_count)
     tape_layout *layout = all->layout;
     void *ids = layout->ids, *segments = layout->segments;
     bool done = grow(&ids, &all->cm_capacity, layout->cm_count + cm_count, sizeof *layout->ids, all->error) &&
-                grow(&segments, &all->segment_capacity, layout->segment_count + 1, sizeof *layout->segments, all->error);
+                grow(&segments, &all->segment_capacity, layout->segment_count + 1, sizeof *layout->segments,
+                     all->error);
     layout->ids = ids;
     layout->segments = segments;
     return done;
@@ -97,8 +98,8 @@ static int32_t next_id(const laying *all)
     return all->wanted->first_id + (int32_t)all->layout->cm_count;
 }
 
-/* Looks for a code of the wanted length, or of what there is room for, then of more, then of less. Returns the length,
- * NO_TM when all are in use. */
+/* Looks for a code of the wanted length, or of what there is room for, then of more, then of less. Returns the
+ * length, NO_TM when all are in use. */
 static unsigned take_code(laying *all, unsigned longest, uint32_t *code)
 {
     const plan *wanted = all->wanted;

@@ -11,7 +11,7 @@ typedef struct layout_segment {
     size_t first_cm;       /* index in the layout's ids of its first CM, as it reads */
     size_t cm_count;
     bool bars;             /* a TM: three CMs or more */
-    uint32_t start_modules;  /* from the beginning of its line to the left edge of its ink; the quiet zone is before */
+    uint32_t start_modules;  /* from the beginning of its line to the left edge of its ink, behind the quiet zone */
 } layout_segment;
 
 typedef struct tape_layout {

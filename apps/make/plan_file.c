@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LENGTH_MIN_MM (PLAN_MODULE_MIN_MM * TAPEMARK_HEIGHT_MODULES)
-#define LENGTH_MAX_MM (PLAN_MODULE_MAX_MM * TAPEMARK_HEIGHT_MODULES)
+/* Seven of the smallest and of the largest modules. */
+#define HEIGHT_MIN_MM 0.7
+#define HEIGHT_MAX_MM 1050
 #define ABOVE_FLOOR_MAX_M 20
 
 /* Height and module may differ by what is lost when a seventh is written with three decimals. */
@@ -30,7 +31,7 @@ typedef struct number_rule {
 } number_rule;
 
 static const number_rule room_rule = {"room_m", " m", PLAN_SIDE_MIN_M, PLAN_SIDE_MAX_M};
-static const number_rule height_rule = {"tape_height_mm", " mm", LENGTH_MIN_MM, LENGTH_MAX_MM};
+static const number_rule height_rule = {"tape_height_mm", " mm", HEIGHT_MIN_MM, HEIGHT_MAX_MM};
 static const number_rule module_rule = {"module_mm", " mm", PLAN_MODULE_MIN_MM, PLAN_MODULE_MAX_MM};
 static const number_rule first_id_rule = {"first_id", "", 0, TAPEMARK_MAX_ID};
 static const number_rule tm_cms_rule = {"tm_cms", "", TAPEMARK_TM_MIN_CMS, TAPEMARK_TM_MAX_CMS};
@@ -340,8 +341,8 @@ static bool read_module(const cJSON *root, const json_path *top, plan *wanted, e
         !read_optional(root, top, &module_rule, &wanted->module_mm, error))
         return false;
     if (height_mm == 0 && wanted->module_mm == 0)
-        return refuse_missing(top, "tape_height_mm", "how tall the ink of the tape is, 60 for instance (or module_mm, "
-                              "a seventh of it)", error);
+        return refuse_missing(top, "tape_height_mm", "how tall the ink of the tape is, 60 for instance (or "
+                              "module_mm, a seventh of it)", error);
     double height_module_mm = height_mm / TAPEMARK_HEIGHT_MODULES;
     if (wanted->module_mm == 0)
         wanted->module_mm = height_module_mm;
