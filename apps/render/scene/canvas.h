@@ -16,9 +16,17 @@ bool canvas_create(canvas *picture, int32_t width_px, int32_t height_px);
 
 void canvas_release(canvas *picture);
 
+/* Both are of the same size. */
+void canvas_copy(const canvas *from, canvas *to);
+
 static inline float *canvas_row(const canvas *picture, int32_t y)
 {
     return picture->at + (size_t)y * (size_t)picture->width_px;
+}
+
+static inline size_t canvas_size(const canvas *picture)
+{
+    return (size_t)picture->width_px * (size_t)picture->height_px;
 }
 
 /* Each pixel becomes a weighted sum of those around it; beyond the border, the border's pixels go on. */

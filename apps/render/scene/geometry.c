@@ -7,10 +7,10 @@
 /* Nearer than this counts as behind the camera; in metres times focal lengths, far below any real depth. */
 static const double least_depth = 1e-6;
 
-/* Of a tape to be seen; the area of a module in the image times the third power of its depth. */
+/* Of a plane to be seen; the area of a square unit in the image times the third power of its depth. */
 static const double least_determinant = 1e-12;
 
-static scene_vector blend(double a, scene_vector u, double b, scene_vector v)
+scene_vector blend(double a, scene_vector u, double b, scene_vector v)
 {
     return (scene_vector){a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
 }
@@ -53,31 +53,54 @@ static double cofactor(const matrix *m, int i, int j)
     return m->at[r][c] * m->at[s][d] - m->at[r][d] * m->at[s][c];
 }
 
-bool image_to_tape(const matrix *to_image, matrix *to_tape)
+bool image_to_plane(const matrix *to_image, bool from_behind, matrix *to_plane)
 {
     double determinant = 0;
     for (int j = 0; j < 3; j++)
         determinant += to_image->at[0][j] * cofactor(to_image, 0, j);
-    if (determinant < least_determinant)
+    if ((from_behind ? fabs(determinant) : determinant) < least_determinant)
         return false;
 
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
-            to_tape->at[j][i] = cofactor(to_image, i, j) / determinant;
+            to_plane->at[j][i] = cofactor(to_image, i, j) / determinant;
     }
     return true;
 }
 
-matrix tape_to_image(const scene *view, const scene_tape *tape)
+plane plane_of_panel(const scene_panel *panel)
+{
+    return (plane){panel->origin_m, panel->along, panel->down, 1};
+}
+
+plane plane_of_tape(const scene_tape *tape)
+{
+    return (plane){tape->origin_m, tape->along, tape->down, tape->module_m};
+}
+
+plane plane_of_picture(const scene_picture *picture)
+{
+    return (plane){picture->origin_m, picture->along, picture->down, 1};
+}
+
+double camera_distance_m(const scene *view, const plane *from)
+{
+    const scene_vector u = from->along, v = from->down;
+    const scene_vector normal = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    const scene_vector to = blend(1, from->origin_m, -1, view->camera.position_m);
+    return fabs(normal.x * to.x + normal.y * to.y + normal.z * to.z);
+}
+
+matrix plane_to_image(const scene *view, const plane *from)
 {
     const scene_camera *camera = &view->camera;
     matrix axes = camera_axes(camera);
-    scene_vector columns[3] = {matrix_times(&axes, tape->along), matrix_times(&axes, tape->down),
-                               matrix_times(&axes, blend(1, tape->origin_m, -1, camera->position_m))};
+    scene_vector columns[3] = {matrix_times(&axes, from->along), matrix_times(&axes, from->down),
+                               matrix_times(&axes, blend(1, from->origin_m, -1, camera->position_m))};
     double centre_x = (view->width_px - 1) / 2.0, centre_y = (view->height_px - 1) / 2.0;
     matrix to_image;
     for (int j = 0; j < 3; j++) {
-        double unit = j < 2 ? tape->module_m : 1;
+        double unit = j < 2 ? from->unit_m : 1;
         to_image.at[0][j] = unit * (camera->focal_px * columns[j].x + centre_x * columns[j].z);
         to_image.at[1][j] = unit * (camera->focal_px * columns[j].y + centre_y * columns[j].z);
         to_image.at[2][j] = unit * columns[j].z;

@@ -152,23 +152,45 @@ scene_panel scene_floor(double left_m, double top_m, double width_m, double dept
                          .light = paint_light, .dark = paint_dark, .scale_m = 1};
 }
 
+/* On the floor, to the left of a side that goes clockwise around. */
+static scene_panel shadow_beside(scene_line side, double reach_m)
+{
+    scene_panel shadow = scene_wall((scene_line){side.to_x_m, side.to_y_m, side.from_x_m, side.from_y_m}, reach_m);
+    shadow.origin_m.y = 0;
+    shadow.down = (scene_vector){shadow.along.z, 0, -shadow.along.x};
+    shadow.look = SCENE_LOOK_SHADOW;
+    shadow.dark = 0.6 * shadow.light;
+    return shadow;
+}
+
 void scene_box_panels(const scene_box *box, scene_panel panels[SCENE_BOX_PANELS])
 {
-    static const double brightness[SCENE_BOX_PANELS] = {0.8, 0.92, 1, 0.88, 1.1};
+    enum { SIDES = 4, TOP = 4, SHADOWS = 5 };
+    static const double brightness[TOP + 1] = {0.8, 0.92, 1, 0.88, 1.1};
     const direction along = direction_of(box->turned_deg);
-    double x[4], y[4];
-    for (int i = 0; i < 4; i++) {
+    double x[SIDES], y[SIDES];
+    for (int i = 0; i < SIDES; i++) {
         double half_width = (i == 0 || i == 3 ? -0.5 : 0.5) * box->width_m;
         double half_depth = (i < 2 ? -0.5 : 0.5) * box->depth_m;
         x[i] = box->x_m + along.x * half_width - along.y * half_depth;
         y[i] = box->y_m + along.y * half_width + along.x * half_depth;
     }
-    for (int i = 0; i < 4; i++)
-        panels[i] = scene_wall((scene_line){x[i], y[i], x[(i + 1) % 4], y[(i + 1) % 4]}, box->height_m);
-    panels[4] = scene_floor(0, 0, box->width_m, box->depth_m, 0);
-    panels[4].origin_m = scene_plan_point(x[0], y[0], box->height_m);
-    panels[4].along = panels[0].along;
-    panels[4].down = panels[1].along;
-    for (int i = 0; i < SCENE_BOX_PANELS; i++)
+    for (int i = 0; i < SIDES; i++) {
+        const scene_line side = {x[i], y[i], x[(i + 1) % SIDES], y[(i + 1) % SIDES]};
+        panels[i] = scene_wall(side, box->height_m);
+        panels[SHADOWS + i] = shadow_beside(side, fmin(box->height_m, 0.25));
+    }
+    panels[TOP] = scene_floor(0, 0, box->width_m, box->depth_m, 0);
+    panels[TOP].origin_m = scene_plan_point(x[0], y[0], box->height_m);
+    panels[TOP].along = panels[0].along;
+    panels[TOP].down = panels[1].along;
+    for (int i = 0; i <= TOP; i++)
         panels[i].light = fmin(box->shade * brightness[i], 255);
+}
+
+scene_picture scene_picture_of(const uint8_t *texels, int32_t columns, int32_t rows, double height_m)
+{
+    return (scene_picture){.texels = texels, .columns = columns, .rows = rows, .width_m = height_m * columns / rows,
+                           .height_m = height_m, .module_m = height_m / rows, .border_shade = 190,
+                           .origin_m = {0, 0, 1}, .along = {1, 0, 0}, .down = {0, 1, 0}};
 }

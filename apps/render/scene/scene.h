@@ -253,8 +253,8 @@ scene_panel scene_wall(scene_line line, double height_m);
 scene_panel scene_floor(double left_m, double top_m, double width_m, double depth_m, double above_floor_m);
 
 /* A box that stands on the floor: something, or someone, in the way. It is turned clockwise on the plan. Its sides
- * are not equally bright. */
-enum { SCENE_BOX_PANELS = 5 };
+ * are not equally bright, and the floor around it is a little darker. */
+enum { SCENE_BOX_PANELS = 9 };
 typedef struct scene_box {
     double x_m, y_m;  /* of its middle */
     double width_m, depth_m, height_m;
