@@ -14,7 +14,7 @@ static const drawing_colour flap_gray = {0.7, 0.7, 0.7, 1};
 #define MARK_WIDTH_MM 0.15
 #define CROSS_ARM_MM 1.8
 #define SMALL_TEXT_MM 2.5
-#define BASELINE_MM 1.3  /* above the lower edge of a band */
+#define BASELINE_MM 1.6  /* above the lower edge of a band */
 
 /* A piece at its place on the page. */
 typedef struct placed_piece {
@@ -107,7 +107,7 @@ typedef struct id_style {
 
 #define ID_SIZE_MM 3.4
 #define ID_SIZE_MIN_MM 1.4
-#define ARROW_WIDTH 0.62  /* in sizes of the font, with the space behind it */
+#define ARROW_WIDTH 0.72  /* in sizes of the font, with the space behind it */
 
 static void format_id(int32_t id, char *text, size_t size)
 {
@@ -157,7 +157,7 @@ static void draw_id(const placed_piece *placed, int32_t id, double middle_mm, do
     double right_limit_mm = placed->right_mm - (placed->piece->joint_after ? CROSS_ARM_MM : 0);
     if (left_mm < left_limit_mm || left_mm + width_mm > right_limit_mm)
         return;
-    drawing_point base = {left_mm, placed->at.y_mm - BASELINE_MM + 0.2};
+    drawing_point base = {left_mm, placed->at.y_mm - BASELINE_MM + 0.6};
     format_id(id, text, sizeof text);
     draw_arrow_up(placed->page, base, size_mm);
     drawing_text(placed->page, text, (drawing_point){left_mm + ARROW_WIDTH * size_mm, base.y_mm}, &font);
@@ -224,30 +224,29 @@ static double line_start_mm(const placed_piece *placed)
     return x_of_halves(placed, 0);
 }
 
-static void format_metres(int64_t step, char *text, size_t size)
+/* A tick every 10 cm along the line, at the edge of the paper once it is cut; a long one every metre. */
+static void draw_metre_mark(const placed_piece *placed, const free_band *band, int64_t step, double x_mm)
 {
-    snprintf(text, size, "%.1f m", (double)step * METRE_STEP_MM / 1000);
+    const double edge_mm = placed->bottom_mm + PIECE_BAND_MM, text_gap_mm = 0.7;
+    bool whole = step % 10 == 0;
+    const drawing_font font = {SMALL_TEXT_MM, whole, DRAWING_LEFT, 0};
+    char text[32];
+    snprintf(text, sizeof text, "%.1f m", (double)step * METRE_STEP_MM / 1000);
+    double left_mm = x_mm + text_gap_mm, right_mm = left_mm + drawing_text_width_mm(placed->page, text, &font);
+    bool is_free = x_mm >= band->left_mm && right_mm <= band->right_mm;
+    drawing_add_line(placed->page, (drawing_point){x_mm, edge_mm - (whole && is_free ? 3.6 : 1.1)},
+                     (drawing_point){x_mm, edge_mm});
+    drawing_stroke(placed->page, whole ? 0.3 : MARK_WIDTH_MM, 0);
+    if (is_free)
+        drawing_text(placed->page, text, (drawing_point){left_mm, lower_baseline_mm(placed)}, &font);
 }
 
-/* A tick every 10 cm along the line, at the edge of the paper once it is cut. */
 static void draw_metre_marks(const placed_piece *placed, const free_band *band)
 {
-    const drawing_font bold = {SMALL_TEXT_MM, true, DRAWING_LEFT, 0};
-    double zero_mm = line_start_mm(placed), edge_mm = placed->bottom_mm + PIECE_BAND_MM;
-    char text[32];
-    int64_t first = (int64_t)ceil((placed->at.x_mm - zero_mm) / METRE_STEP_MM - 1e-9);
-    for (int64_t step = first; zero_mm + (double)step * METRE_STEP_MM <= placed->right_mm + 1e-6; step++) {
-        double x_mm = zero_mm + (double)step * METRE_STEP_MM;
-        bool whole = step % 10 == 0;
-        const drawing_font *font = whole ? &bold : &small_left;
-        drawing_add_line(placed->page, (drawing_point){x_mm, edge_mm - (whole ? 3.4 : 1.8)},
-                         (drawing_point){x_mm, edge_mm});
-        drawing_stroke(placed->page, whole ? 0.3 : MARK_WIDTH_MM, 0);
-        format_metres(step, text, sizeof text);
-        double left_mm = x_mm + 0.7, right_mm = left_mm + drawing_text_width_mm(placed->page, text, font);
-        if (left_mm >= band->left_mm && right_mm <= band->right_mm)
-            drawing_text(placed->page, text, (drawing_point){left_mm, lower_baseline_mm(placed)}, font);
-    }
+    double zero_mm = line_start_mm(placed);
+    int64_t step = (int64_t)ceil((placed->at.x_mm - zero_mm) / METRE_STEP_MM - 1e-9);
+    for (; zero_mm + (double)step * METRE_STEP_MM <= placed->right_mm + 1e-6; step++)
+        draw_metre_mark(placed, band, step, zero_mm + (double)step * METRE_STEP_MM);
 }
 
 /* The next place from `x_mm` on where text does not run into a metre mark. */

@@ -276,6 +276,22 @@ static void draw_bracket(preview *view, const layout_segment *segment)
                 v_mm + BRACKET_MM + 0.6, &font);
 }
 
+static void format_id(int32_t id, char *text, size_t size)
+{
+    snprintf(text, size, "%s%ld", id < 0 ? "\u2212" : "", labs((long)id));
+}
+
+/* With the white around it. */
+static double widest_id_mm(const preview *view, const drawing_font *font)
+{
+    const tape_layout *layout = view->layout;
+    char text[24];
+    int32_t last_id = layout->ids[layout->cm_count - 1];
+    format_id(last_id < 0 ? last_id : -last_id, text, sizeof text);
+    return drawing_text_width_mm(view->page, text, font) + 0.5 * font->size_mm;
+}
+
+/* Each so many of a segment, as their width allows. */
 static void draw_ids(preview *view, const layout_segment *segment)
 {
     const plan_line *line = &view->wanted->lines[segment->line];
@@ -283,11 +299,13 @@ static void draw_ids(preview *view, const layout_segment *segment)
     const drawing_font font = {TEXT_MM, false, DRAWING_MIDDLE, 0};
     double v_mm = band_top_mm(line, &axis) + band_height_mm(&axis) + ID_GAP_MM;
     char text[24];
+    double pitch_mm = TAPEMARK_CM_PITCH_MODULES * axis.module_mm;
+    size_t step = (size_t)ceil(widest_id_mm(view, &font) / pitch_mm);
     drawing_set_colour(view->page, id_colour);
-    for (size_t slot = 0; slot < segment->cm_count; slot++) {
+    for (size_t slot = 0; slot < segment->cm_count; slot += step) {
         int32_t id = view->layout->ids[segment->first_cm + slot];
         double middle_modules = layout_cm_start_modules(segment, slot) + TAPEMARK_CM_WIDTH_MODULES / 2.0;
-        snprintf(text, sizeof text, "%s%ld", id < 0 ? "\u2212" : "", labs((long)id));
+        format_id(id, text, sizeof text);
         label_along(view->page, &view->taken, &axis, text, middle_modules * axis.module_mm, v_mm, &font);
     }
 }
