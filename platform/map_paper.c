@@ -208,8 +208,8 @@ static bool signs_follow_code(const map_entry *entries)
     return true;
 }
 
-/* A light CM has an id of zero or more and is a 1 of the code. Puts the CMs of a TM in the order in which it reads, as
- * far as that can be told: the order of the file, or else that of the ids without their signs. */
+/* A light CM has an id of zero or more and is a 1 of the code. Puts the CMs of a TM in the order in which it reads,
+ * as far as that can be told: the order of the file, or else that of the ids without their signs. */
 static bool check_tm(map_entry *entries, size_t count, error_text *error)
 {
     const char *name = entries[0].tm_name, *code = entries[0].code;

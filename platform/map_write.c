@@ -186,7 +186,8 @@ static void write_paper_segment(FILE *file, const tape_map *map, const map_segme
         write_key(file, "y1", cms->centre.y_m);
         write_key(file, "x2", last->centre.x_m);
         write_key(file, "y2", last->centre.y_m);
-        fprintf(file, "\"idtm\":\"%s\",\"n_tm\":\"%s\",\"idcm\":\"%s\",\"idcm_decimal\":%" PRId32 ",\"checksum\":\"%s\",",
+        fprintf(file,
+                "\"idtm\":\"%s\",\"n_tm\":\"%s\",\"idcm\":\"%s\",\"idcm_decimal\":%" PRId32 ",\"checksum\":\"%s\",",
                 segment->code[0] != '\0' ? segment->code : " ", name, word, cm->id, checksum);
         write_key(file, "x", cm->centre.x_m);
         fputs("\"y\":", file);
