@@ -80,7 +80,8 @@ static bool paint_popcorn(const scene *view, canvas *picture)
 static double uneven(double shade, double a_m, double b_m)
 {
     const double degrees = 180 / 3.14159265358979323846;
-    return shade * (1 + 0.03 * direction_of(degrees * (1.7 * a_m + 0.6)).y + 0.02 * direction_of(degrees * 2.3 * b_m).x);
+    const direction a = direction_of(degrees * (1.7 * a_m + 0.6)), b = direction_of(degrees * 2.3 * b_m);
+    return shade * (1 + 0.03 * a.y + 0.02 * b.x);
 }
 
 static double room_shade(const scene_background *background, scene_vector from, scene_vector ray)

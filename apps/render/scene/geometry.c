@@ -32,13 +32,6 @@ matrix camera_axes(const scene_camera *camera)
                      {pitched_ahead.x, pitched_ahead.y, pitched_ahead.z}}};
 }
 
-scene_vector matrix_times(const matrix *m, scene_vector v)
-{
-    return (scene_vector){m->at[0][0] * v.x + m->at[0][1] * v.y + m->at[0][2] * v.z,
-                          m->at[1][0] * v.x + m->at[1][1] * v.y + m->at[1][2] * v.z,
-                          m->at[2][0] * v.x + m->at[2][1] * v.y + m->at[2][2] * v.z};
-}
-
 scene_vector transposed_times(const matrix *m, scene_vector v)
 {
     return (scene_vector){m->at[0][0] * v.x + m->at[1][0] * v.y + m->at[2][0] * v.z,

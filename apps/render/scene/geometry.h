@@ -1,5 +1,5 @@
-/* From places on a plane to pixels and back. Places are in the plane's own units, those of a tape in modules from the top
- * left corner of its ink, those of panels and pictures in metres from their own. */
+/* From places on a plane to pixels and back. Places are in the plane's own units, those of a tape in modules from the
+ * top left corner of its ink, those of panels and pictures in metres from their own. */
 #ifndef SCENE_GEOMETRY_H
 #define SCENE_GEOMETRY_H
 
@@ -12,7 +12,13 @@ typedef struct matrix {
 /* Rows are the camera's axes (right, down, ahead) in the world. */
 matrix camera_axes(const scene_camera *camera);
 
-scene_vector matrix_times(const matrix *m, scene_vector v);
+static inline scene_vector matrix_times(const matrix *m, scene_vector v)
+{
+    return (scene_vector){m->at[0][0] * v.x + m->at[0][1] * v.y + m->at[0][2] * v.z,
+                          m->at[1][0] * v.x + m->at[1][1] * v.y + m->at[1][2] * v.z,
+                          m->at[2][0] * v.x + m->at[2][1] * v.y + m->at[2][2] * v.z};
+}
+
 scene_vector transposed_times(const matrix *m, scene_vector v);
 
 scene_vector blend(double a, scene_vector u, double b, scene_vector v);
@@ -38,8 +44,8 @@ double camera_distance_m(const scene *view, const plane *from);
 /* False for points that are not before the camera. */
 bool project(const matrix *to_image, double along, double across, tapemark_point *point);
 
-/* The part of the image that the rectangle from (left, top) to (right, bottom) can cover: first pixel and the one after
- * the last. False when it is out of sight. */
+/* The part of the image that the rectangle from (left, top) to (right, bottom) can cover: first pixel and the one
+ * after the last. False when it is out of sight. */
 typedef struct pixel_box {
     int32_t left, top, right, bottom;
 } pixel_box;

@@ -12,13 +12,16 @@
 static double striped_length(double x, double period, double width)
 {
     double whole = floor(x / period);
-    return whole * width + fmin(x - whole * period, width);
+    double into = x - whole * period;
+    return whole * width + (into < width ? into : width);
 }
 
 /* Share of stripes, the first `width` of each period, in what reaches half of `reach` to both sides of x. */
 static double stripes_share(double x, double reach, double period, double width)
 {
-    double half = fmax(reach, 1e-9) / 2;
+    double half = reach > 1e-9 ? reach / 2 : 1e-9, into = x - floor(x / period) * period;
+    if (into - half > width && into + half < period)
+        return 0;
     return (striped_length(x + half, period, width) - striped_length(x - half, period, width)) / (2 * half);
 }
 
@@ -40,22 +43,27 @@ static double smooth_step(double x)
     return x * x * (3 - 2 * x);
 }
 
-/* Smooth noise from -1 to 1 with details of size 1. */
-static double smooth_noise(uint64_t seed, double x, double y)
+/* Smooth noise from -1 to 1 with details of size 1, which repeats after NOISE_SIDE of them. Layers begin at different
+ * places of it. */
+static double smooth_noise(const noise_table *noise, uint64_t layer, double x, double y)
 {
+    enum { MASK = NOISE_SIDE - 1 };
     double left = floor(x), top = floor(y), u = smooth_step(x - left), v = smooth_step(y - top);
-    int64_t column = (int64_t)left, row = (int64_t)top;
-    double above = (1 - u) * random_tone(seed, column, row) + u * random_tone(seed, column + 1, row);
-    double below = (1 - u) * random_tone(seed, column, row + 1) + u * random_tone(seed, column + 1, row + 1);
-    return (1 - v) * above + v * below;
+    uint64_t start = layer * UINT64_C(0x9e3779b97f4a7c15);
+    uint64_t column = (uint64_t)(int64_t)left + (start >> 40), row = (uint64_t)(int64_t)top + (start >> 52);
+    const float *above = noise->tones[row & MASK], *below = noise->tones[(row + 1) & MASK];
+    double upper = (1 - u) * (double)above[column & MASK] + u * (double)above[(column + 1) & MASK];
+    double lower = (1 - u) * (double)below[column & MASK] + u * (double)below[(column + 1) & MASK];
+    return (1 - v) * upper + v * lower;
 }
 
 static double noise_on(const panel_look *look, const patch *seen, uint64_t layer, double along_m, double across_m)
 {
-    double left = kept(along_m, seen->reach_along_m) * kept(across_m, seen->reach_across_m);
-    if (left < 0.05)
+    const double a = seen->reach_along_m * across_m, b = seen->reach_across_m * along_m, size = along_m * across_m;
+    const double faded = (size * size + a * a) * (size * size + b * b), unfaded = size * size * size * size;
+    if (unfaded < 0.05 * faded)
         return 0;
-    return left * smooth_noise(look->seed + layer, seen->along_m / along_m, seen->across_m / across_m);
+    return unfaded / faded * smooth_noise(look->noise, look->seed + layer, seen->along_m / along_m, seen->across_m / across_m);
 }
 
 static double mixed(double share_dark, double light, double dark)
@@ -67,7 +75,8 @@ static double mixed(double share_dark, double light, double dark)
 
 static double paint(const panel_look *look, const patch *seen)
 {
-    return look->light * (1 + 0.04 * noise_on(look, seen, 0, 1.3, 0.9) + 0.015 * noise_on(look, seen, 1, 0.004, 0.004));
+    double tone = 0.04 * noise_on(look, seen, 0, 1.3, 0.9) + 0.015 * noise_on(look, seen, 1, 0.004, 0.004);
+    return look->light * (1 + tone);
 }
 
 static double tiles(const panel_look *look, const patch *seen)
@@ -163,12 +172,18 @@ static double share_of_dark_modules(module_pattern *dark_at, uint64_t seed)
     return (double)dark / (SIDE * SIDE);
 }
 
-panel_look panel_look_of(const scene *view, size_t panel_index)
+void fill_noise_table(uint64_t seed, noise_table *noise)
+{
+    for (int32_t i = 0; i < NOISE_SIDE * NOISE_SIDE; i++)
+        noise->tones[i / NOISE_SIDE][i % NOISE_SIDE] = (float)random_tone(seed, i % NOISE_SIDE, i / NOISE_SIDE);
+}
+
+panel_look panel_look_of(const scene *view, const noise_table *noise, size_t panel_index)
 {
     const scene_panel *panel = &view->panels[panel_index];
     panel_look look = {panel, random_at(view->seed, 0x70616e656c, (int64_t)panel_index),
                        light_of_shade(panel->light, view->sensor.gamma),
-                       light_of_shade(panel->dark, view->sensor.gamma), 0};
+                       light_of_shade(panel->dark, view->sensor.gamma), 0, noise};
     if (panel->look == SCENE_LOOK_PATTERN)
         look.pattern_share = share_of_dark_modules(module_pattern_of(panel->pattern), look.seed);
     return look;

@@ -6,8 +6,8 @@
 #include "prints.h"
 #include "world.h"
 
-/* Paints all pixels marked as mixed, point by point of each; `behind` is what is seen where there is nothing. False when
- * memory runs out. */
+/* Paints all pixels marked as mixed, point by point of each; `behind` is what is seen where there is nothing. False
+ * when memory runs out. */
 bool paint_mixed(const world *seen, prints *all, const canvas *behind, canvas *picture);
 
 #endif

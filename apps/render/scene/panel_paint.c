@@ -18,7 +18,8 @@ static void paint_panel(const world *seen, int32_t index, const panel_look *look
     for (int32_t y = part->box.top; y < part->box.bottom; y++) {
         const int32_t *front = seen->front + (size_t)y * (size_t)seen->view->width_px;
         float *row = canvas_row(picture, y);
-        for (int32_t x = part->box.left; x < part->box.right; x++) {
+        const pixel_span span = centres_in_row(part, y);
+        for (int32_t x = span.left; x < span.right; x++) {
             if (front[x] != index)
                 continue;
             const patch here = patch_at(part, x, y);
@@ -32,8 +33,9 @@ static void paint_shadow(const world *seen, int32_t index, const panel_look *loo
     const thing *part = &seen->things[index];
     for (int32_t y = part->box.top; y < part->box.bottom; y++) {
         float *row = canvas_row(picture, y);
-        for (int32_t x = part->box.left; x < part->box.right; x++) {
-            if (!thing_at(part, x, y) || is_hidden(seen, part, x, y))
+        const pixel_span span = centres_in_row(part, y);
+        for (int32_t x = span.left; x < span.right; x++) {
+            if (is_hidden(seen, part, x, y))
                 continue;
             const patch here = patch_at(part, x, y);
             row[x] *= (float)look_at(look, &here);

@@ -5,8 +5,8 @@
 
 /*
  * A pixel is a quadrangle on the picture. By Green's theorem, the integral over it is one along its sides: of light
- * summed up from the picture's left edge, over the way down. Light summed up is linear within a texel, so the integral
- * of each piece of a side within one texel is exact; and the work grows with the sides, not with the area.
+ * summed up from the picture's left edge, over the way down. Light summed up is linear within a texel, so the
+ * integral of each piece of a side within one texel is exact; and the work grows with the sides, not with the area.
  */
 
 /* In texels, y down. */
@@ -203,12 +203,14 @@ typedef struct corner_line {
     side_sums *sides;
 } corner_line;
 
-static void fill_line(const texture *from, const pixel_box *box, double y_px, corner_line *line)
+/* Between two rows, for the pixels that the picture reaches in either. */
+static void fill_line(const texture *from, const thing *part, int32_t upper_row, corner_line *line)
 {
-    for (int32_t x = box->left; x <= box->right; x++) {
-        const int32_t i = x - box->left;
-        line->corners[i] = spot_at(from, x - 0.5, y_px);
-        if (i > 0)
+    const pixel_span span = span_in_rows(part, upper_row);
+    for (int32_t x = span.left; x <= span.right; x++) {
+        const int32_t i = x - part->box.left;
+        line->corners[i] = spot_at(from, x - 0.5, upper_row + 0.5);
+        if (x > span.left)
             line->sides[i - 1] = sums_along(from, line->corners[i - 1], line->corners[i]);
     }
 }
@@ -230,8 +232,12 @@ static void paint_row(world *seen, int32_t thing_index, const texture *from, con
                       const corner_line *below, int32_t y, float *row)
 {
     const thing *part = &seen->things[thing_index];
-    side_sums left = sums_along(from, above->corners[0], below->corners[0]);
-    for (int32_t x = part->box.left; x < part->box.right; x++) {
+    const pixel_span span = span_in_row(part, y);
+    if (span.left == span.right)
+        return;
+    const int32_t first = span.left - part->box.left;
+    side_sums left = sums_along(from, above->corners[first], below->corners[first]);
+    for (int32_t x = span.left; x < span.right; x++) {
         const int32_t i = x - part->box.left;
         const side_sums right = sums_along(from, above->corners[i + 1], below->corners[i + 1]);
         if (!is_hidden(seen, part, x, y)) {
@@ -266,12 +272,12 @@ bool paint_picture(world *seen, size_t thing_index, const picture_print *print, 
     bool done = corners != NULL && sides != NULL;
     if (done) {
         corner_line above = {corners, sides}, below = {corners + length, sides + length};
-        fill_line(&from, &part->box, part->box.top - 0.5, &below);
+        fill_line(&from, part, part->box.top - 1, &below);
         for (int32_t y = part->box.top; y < part->box.bottom; y++) {
             const corner_line line = above;
             above = below;
             below = line;
-            fill_line(&from, &part->box, y + 0.5, &below);
+            fill_line(&from, part, y, &below);
             paint_row(seen, (int32_t)thing_index, &from, &above, &below, y, canvas_row(picture, y));
         }
     }

@@ -6,8 +6,8 @@
 #include "prints.h"
 #include "world.h"
 
-/* Where nothing is in front of it; where it meets tapes or other pictures, pixels are only marked as mixed. False when
- * memory runs out. */
+/* Where nothing is in front of it; where it meets tapes or other pictures, pixels are only marked as mixed. False
+ * when memory runs out. */
 bool paint_picture(world *seen, size_t thing_index, const picture_print *print, canvas *picture);
 
 /* Mean light of the part of a pixel that shows it. */

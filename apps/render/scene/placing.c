@@ -19,7 +19,8 @@ static scene_vector turned(scene_vector v, const scene_pose *pose)
     const direction roll = direction_of(pose->roll_deg);
     scene_vector yawed = {yaw.x * v.x - yaw.y * v.z, v.y, yaw.y * v.x + yaw.x * v.z};
     scene_vector pitched = {yawed.x, pitch.x * yawed.y - pitch.y * yawed.z, pitch.y * yawed.y + pitch.x * yawed.z};
-    return (scene_vector){roll.x * pitched.x - roll.y * pitched.y, roll.y * pitched.x + roll.x * pitched.y, pitched.z};
+    return (scene_vector){roll.x * pitched.x - roll.y * pitched.y, roll.y * pitched.x + roll.x * pitched.y,
+                          pitched.z};
 }
 
 /* Where something of this size lies. */
@@ -31,8 +32,8 @@ static spot before_camera(const scene *view, double module_m, double width_m, do
 {
     matrix axes = camera_axes(&view->camera);
     double depth_m = view->camera.focal_px * module_m / pose->px_per_module;
-    scene_vector centre = {pose->dx_px / view->camera.focal_px * depth_m, pose->dy_px / view->camera.focal_px * depth_m,
-                           depth_m};
+    scene_vector centre = {pose->dx_px / view->camera.focal_px * depth_m,
+                           pose->dy_px / view->camera.focal_px * depth_m, depth_m};
     spot here;
     here.along = transposed_times(&axes, turned((scene_vector){1, 0, 0}, pose));
     here.down = transposed_times(&axes, turned((scene_vector){0, 1, 0}, pose));
@@ -140,9 +141,9 @@ static const double paint_light = 176, paint_dark = 140;
 scene_panel scene_wall(scene_line line, double height_m)
 {
     const way foot = way_along(line, 0);
-    return (scene_panel){.origin_m = {foot.from_m.x, -height_m, foot.from_m.z}, .along = foot.along, .down = {0, 1, 0},
-                         .width_m = length_of(line), .height_m = height_m, .look = SCENE_LOOK_PAINT,
-                         .light = paint_light, .dark = paint_dark, .scale_m = 1};
+    return (scene_panel){.origin_m = {foot.from_m.x, -height_m, foot.from_m.z}, .along = foot.along,
+                         .down = {0, 1, 0}, .width_m = length_of(line), .height_m = height_m,
+                         .look = SCENE_LOOK_PAINT, .light = paint_light, .dark = paint_dark, .scale_m = 1};
 }
 
 scene_panel scene_floor(double left_m, double top_m, double width_m, double depth_m, double above_floor_m)

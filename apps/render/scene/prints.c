@@ -10,10 +10,14 @@ bool prints_create(prints *all, const scene *view)
 {
     *all = (prints){view, calloc(view->tape_count + 1, sizeof *all->tapes),
                     calloc(view->picture_count + 1, sizeof *all->pictures),
-                    calloc(view->panel_count + 1, sizeof *all->looks)};
-    for (size_t i = 0; all->looks != NULL && i < view->panel_count; i++)
-        all->looks[i] = panel_look_of(view, i);
-    return all->tapes != NULL && all->pictures != NULL && all->looks != NULL;
+                    calloc(view->panel_count + 1, sizeof *all->looks), malloc(sizeof *all->noise)};
+    if (all->tapes == NULL || all->pictures == NULL || all->looks == NULL || all->noise == NULL)
+        return false;
+    if (view->panel_count > 0)
+        fill_noise_table(view->seed, all->noise);
+    for (size_t i = 0; i < view->panel_count; i++)
+        all->looks[i] = panel_look_of(view, all->noise, i);
+    return true;
 }
 
 void prints_release(prints *all)
@@ -25,6 +29,7 @@ void prints_release(prints *all)
     free(all->tapes);
     free(all->pictures);
     free(all->looks);
+    free(all->noise);
 }
 
 static bool draw_cells(const scene_tape *tape, tape_print *print)

@@ -1,4 +1,4 @@
-/* What is on panels, tapes and pictures, ready to be painted: prints when first seen; kept for all poses of a frame. */
+/* What is on panels, tapes and pictures, ready to be painted: prints when first seen; kept for all poses. */
 #ifndef SCENE_PRINTS_H
 #define SCENE_PRINTS_H
 
@@ -35,6 +35,7 @@ typedef struct prints {
     tape_print *tapes;        /* without cells where not yet made */
     picture_print *pictures;  /* without sums where not yet made */
     panel_look *looks;
+    noise_table *noise;
 } prints;
 
 /* False when memory runs out. Either way, prints_release() is to be called. */

@@ -15,8 +15,8 @@
  *
  * World coordinates are in metres: x to the right, y down, z ahead of the camera as it stands by default. A floor
  * plan (x right, y down, seen from above) lies in this world with its floor at y = 0: plan (x, y) at a height is
- * world (x, -height, -y). Image coordinates are the decoder's: in pixels, (0, 0) is the centre of the first one. Shades
- * are gray levels as a sensor gives them at exposure 1, 0 to 255.
+ * world (x, -height, -y). Image coordinates are the decoder's: in pixels, (0, 0) is the centre of the first one.
+ * Shades are gray levels as a sensor gives them at exposure 1, 0 to 255.
  *
  * Panels, tapes and pictures are flat and hide what is behind them. Of two in the same plane, to a millimetre, the
  * later one covers the earlier: panels in their order, then tapes, then pictures. That is how tapes stick to walls.

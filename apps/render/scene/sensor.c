@@ -119,7 +119,7 @@ static uint32_t sample_for(const response *of, double light)
 
 static double limited(float light)
 {
-    return fmin(fmax((double)light, 0), full_well);
+    return light > 0 ? light < (float)full_well ? (double)light : full_well : 0;
 }
 
 bool apply_sensor(const scene_sensor *sensor, uint64_t seed, unsigned bits, canvas *picture, uint16_t *samples)

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "lattice.h"
+
 enum { CELL_NONE = 2 };
 
 /* A cell of the print, or of the endless plane around it: that begins one cell further out on all sides and is
@@ -14,7 +16,7 @@ typedef struct place {
 
 static int32_t cell_index(double coordinate, int32_t count)
 {
-    return (int32_t)floor(fmin(fmax(coordinate, -1), count));
+    return coordinate < count ? coordinate > -1 ? (int32_t)floor(coordinate) : -1 : count;
 }
 
 static place place_of(const matrix *to_tape, const tape_print *print, double x_px, double y_px)
@@ -22,8 +24,9 @@ static place place_of(const matrix *to_tape, const tape_print *print, double x_p
     scene_vector p = matrix_times(to_tape, (scene_vector){x_px, y_px, 1});
     place here = {-1, -1, -1, -1};
     if (p.z > 0) {
-        here.along = p.x / p.z + print->quiet_columns;
-        here.across = p.y / p.z + print->quiet_rows;
+        double depth_m = 1 / p.z;
+        here.along = p.x * depth_m + print->quiet_columns;
+        here.across = p.y * depth_m + print->quiet_rows;
         here.column = cell_index(here.along, print->columns);
         here.row = cell_index(here.across, print->rows);
     }
@@ -37,28 +40,26 @@ static int cell_at(const tape_print *print, const place *here)
     return print->cells[here->row * print->columns + here->column];
 }
 
-/* Points spread evenly over a pixel, all different in x and in y: an edge that lies along the pixels shifts by
- * 1 / count px at a time. Fibonacci numbers make the lattice (n, m) with the points (i / n, frac(i m / n)). */
-static void count_samples(const matrix *to_tape, const tape_print *print, double x_px, double y_px, bool small_cells,
-                          int counts[3])
+static void count_samples(const matrix *to_tape, const tape_print *print, const lattice *points, double x_px,
+                          double y_px, int counts[3])
 {
-    const int count = small_cells ? 89 : 34, multiplier = small_cells ? 55 : 21;
-    for (int i = 0; i < count; i++) {
-        double dx = (i + 0.5) / count - 0.5, dy = ((i * multiplier) % count + 0.5) / count - 0.5;
-        place here = place_of(to_tape, print, x_px + dx, y_px + dy);
+    for (int i = 0; i < points->count; i++) {
+        place here = place_of(to_tape, print, x_px + points->dx_px[i], y_px + points->dy_px[i]);
         counts[cell_at(print, &here)]++;
     }
 }
 
-/* The two lines of pixel corners above and below a row of pixels. */
+/* The two lines of pixel corners above and below a row of pixels; the first corner is that of the box. */
 typedef struct corner_lines {
     place *above, *below;
 } corner_lines;
 
-static void fill_line(const matrix *to_tape, const tape_print *print, const pixel_box *box, double y_px, place *line)
+/* The line between two rows, for the pixels that the tape reaches in either. */
+static void fill_line(const thing *tape, const tape_print *print, int32_t upper_row, place *line)
 {
-    for (int32_t x = box->left; x <= box->right; x++)
-        line[x - box->left] = place_of(to_tape, print, x - 0.5, y_px);
+    const pixel_span span = span_in_rows(tape, upper_row);
+    for (int32_t x = span.left; x <= span.right; x++)
+        line[x - tape->box.left] = place_of(&tape->to_plane, print, x - 0.5, upper_row + 0.5);
 }
 
 static bool same_cell(const place *a, const place *b)
@@ -89,6 +90,7 @@ typedef struct brush {
     const thing *tape;
     int32_t tape_index;
     const tape_print *print;
+    lattice coarse, fine;
 } brush;
 
 /* Of a pixel that the tape reaches: how many points of it show which cells. */
@@ -102,7 +104,7 @@ static void count_cells(const brush *with, const place *const corners[4], int32_
     bool small_cells =
         extent(corners[0]->along, corners[1]->along, corners[2]->along, corners[3]->along) > 0.8 ||
         extent(corners[0]->across, corners[1]->across, corners[2]->across, corners[3]->across) > 0.8;
-    count_samples(&with->tape->to_plane, with->print, x, y, small_cells, counts);
+    count_samples(&with->tape->to_plane, with->print, small_cells ? &with->fine : &with->coarse, x, y, counts);
 }
 
 static void paint_pixel(const brush *with, const place *const corners[4], int32_t x, int32_t y, float *pixel)
@@ -124,14 +126,14 @@ static void paint_pixel(const brush *with, const place *const corners[4], int32_
 static void paint_box(const brush *with, corner_lines lines, canvas *picture)
 {
     const pixel_box *box = &with->tape->box;
-    const matrix *to_tape = &with->tape->to_plane;
-    fill_line(to_tape, with->print, box, box->top - 0.5, lines.below);
+    fill_line(with->tape, with->print, box->top - 1, lines.below);
     for (int32_t y = box->top; y < box->bottom; y++) {
         place *line = lines.above;
         lines.above = lines.below;
         lines.below = line;
-        fill_line(to_tape, with->print, box, y + 0.5, lines.below);
-        for (int32_t x = box->left; x < box->right; x++) {
+        fill_line(with->tape, with->print, y, lines.below);
+        const pixel_span span = span_in_row(with->tape, y);
+        for (int32_t x = span.left; x < span.right; x++) {
             int32_t i = x - box->left;
             const place *const corners[4] = {&lines.above[i], &lines.above[i + 1], &lines.below[i + 1],
                                              &lines.below[i]};
@@ -147,7 +149,7 @@ bool paint_tape(world *seen, size_t thing_index, const tape_print *print, canvas
     place *lines = malloc(2 * line_length * sizeof *lines);
     if (lines == NULL)
         return false;
-    const brush with = {seen, tape, (int32_t)thing_index, print};
+    const brush with = {seen, tape, (int32_t)thing_index, print, lattice_of(34, 21), lattice_of(89, 55)};
     paint_box(&with, (corner_lines){lines, lines + line_length}, picture);
     free(lines);
     return true;

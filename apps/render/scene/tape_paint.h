@@ -6,8 +6,8 @@
 #include "prints.h"
 #include "world.h"
 
-/* Where nothing is in front of it; where it meets other tapes or pictures, pixels are only marked as mixed. False when
- * memory runs out. */
+/* Where nothing is in front of it; where it meets other tapes or pictures, pixels are only marked as mixed. False
+ * when memory runs out. */
 bool paint_tape(world *seen, size_t thing_index, const tape_print *print, canvas *picture);
 
 /* Its light at a point that is on it. */

@@ -96,6 +96,59 @@ bool is_shadow(const scene *view, const thing *part)
     return part->kind == THING_PANEL && view->panels[part->index].look == SCENE_LOOK_SHADOW;
 }
 
+/* Moves the ends of a span to where a function, given this much of its sway within a pixel, is not negative. */
+static void limit_span(const linear *function, double sway_share, int32_t y, double ends[2])
+{
+    double rest = function->y * y + function->constant + sway_share * (fabs(function->x) + fabs(function->y));
+    if (function->x > 0)
+        ends[0] = fmax(ends[0], -rest / function->x);
+    else if (function->x < 0)
+        ends[1] = fmin(ends[1], -rest / function->x);
+    else if (rest < 0)
+        ends[1] = ends[0] - 1;
+}
+
+static pixel_span limited_span(const thing *part, double sway_share, int32_t y)
+{
+    double ends[2] = {part->box.left, part->box.right - 1};
+    limit_span(&part->near, sway_share, y, ends);
+    for (int i = 0; i < 4; i++)
+        limit_span(&part->inside[i], sway_share, y, ends);
+    pixel_span span = {(int32_t)floor(fmin(ends[0], part->box.right)),
+                       (int32_t)ceil(fmax(ends[1], part->box.left - 1)) + 1};
+    span.left = span.left < part->box.left ? part->box.left : span.left;
+    span.right = span.right > part->box.right ? part->box.right : span.right;
+    span.right = span.right < span.left ? span.left : span.right;
+    return span;
+}
+
+pixel_span span_in_row(const thing *part, int32_t y)
+{
+    const double slack = 1e-3;
+    return limited_span(part, 0.5 + slack, y);
+}
+
+pixel_span centres_in_row(const thing *part, int32_t y)
+{
+    pixel_span span = limited_span(part, 0, y);
+    while (span.left < span.right && !thing_at(part, span.left, y))
+        span.left++;
+    while (span.left < span.right && !thing_at(part, span.right - 1, y))
+        span.right--;
+    return span;
+}
+
+pixel_span span_in_rows(const thing *part, int32_t upper_y)
+{
+    const pixel_span above = span_in_row(part, upper_y), below = span_in_row(part, upper_y + 1);
+    if (above.left == above.right)
+        return below;
+    if (below.left == below.right)
+        return above;
+    return (pixel_span){above.left < below.left ? above.left : below.left,
+                        above.right > below.right ? above.right : below.right};
+}
+
 /* ---- What is in front ---------------------------------------------------------------------------------- */
 
 static void put_panel_in_front(world *seen, int32_t index)
@@ -103,8 +156,9 @@ static void put_panel_in_front(world *seen, int32_t index)
     const thing *part = &seen->things[index];
     for (int32_t y = part->box.top; y < part->box.bottom; y++) {
         int32_t *front = seen->front + (size_t)y * (size_t)seen->view->width_px;
-        for (int32_t x = part->box.left; x < part->box.right; x++) {
-            if (thing_at(part, x, y) && !(front[x] != NOTHING && hides(&seen->things[front[x]], part, x, y)))
+        const pixel_span span = centres_in_row(part, y);
+        for (int32_t x = span.left; x < span.right; x++) {
+            if (front[x] == NOTHING || !hides(&seen->things[front[x]], part, x, y))
                 front[x] = index;
         }
     }

@@ -52,8 +52,8 @@ void world_release(world *seen);
  * seen, pixels are marked as mixed. False when memory runs out. */
 bool world_find_front(world *seen);
 
-/* A tape or picture is about to paint a pixel where nothing hides it, all of the pixel or a part: false when it is left
- * for later, because several things meet there. */
+/* A tape or picture is about to paint a pixel where nothing hides it, all of the pixel or a part: false when it is
+ * left for later, because several things meet there. */
 bool may_paint(world *seen, int32_t thing_index, bool partial, int32_t x, int32_t y);
 
 /* Shadows hide nothing. */
@@ -69,6 +69,19 @@ static inline bool thing_at(const thing *part, double x_px, double y_px)
            linear_at(&part->inside[1], x_px, y_px) >= 0 && linear_at(&part->inside[2], x_px, y_px) >= 0 &&
            linear_at(&part->inside[3], x_px, y_px) >= 0;
 }
+
+/* The pixels of a row that a thing can reach: the first and the one after the last; maybe none. */
+typedef struct pixel_span {
+    int32_t left, right;
+} pixel_span;
+
+pixel_span span_in_row(const thing *part, int32_t y);
+
+/* Those whose centre it reaches. */
+pixel_span centres_in_row(const thing *part, int32_t y);
+
+/* In this row or in the next one, any part of a pixel. */
+pixel_span span_in_rows(const thing *part, int32_t upper_y);
 
 /* Whether at this place the plane of `front` hides what is in the plane of `behind`: that is more than a millimetre
  * further away, at a right angle to `front`. */
