@@ -18,7 +18,7 @@ cd "$work"
 commands=0
 while read -r line || [ -n "$line" ]; do
     case $line in
-    *tapemark-render*.raw | *tapemark-render*.y4m | *tapemark-render*.pgm) ;;
+    *tapemark-render*.raw | *tapemark-render*.y4m | *tapemark-render*.pgm | *tapemark-render*.png) ;;
     *) continue ;;
     esac
     # Neither quotes nor patterns are used in the commands: plain splitting takes them apart.
