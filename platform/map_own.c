@@ -155,8 +155,9 @@ static bool check_repetition(const map_reading *reading)
     for (size_t i = 1; unique && i < count; i++) {
         const cm_place *a = &places[i - 1], *b = &places[i];
         if (a->id == b->id)
-            unique = map_reading_refuse(reading, IN_MAP, "segments[%zu].cms[%zu] and segments[%zu].cms[%zu] both have "
-                                        "the id %d", a->segment, a->cm, b->segment, b->cm, a->id);
+            unique = map_reading_refuse(reading, IN_MAP,
+                                        "segments[%zu].cms[%zu] and segments[%zu].cms[%zu] both have the id %d",
+                                        a->segment, a->cm, b->segment, b->cm, a->id);
     }
     free(places);
     return unique;
