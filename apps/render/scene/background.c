@@ -99,11 +99,11 @@ static double room_shade(const scene_background *background, scene_vector from, 
     return uneven(background->light, from.x + wall * ray.x, from.y + wall * ray.y);
 }
 
-static void paint_room(const scene *view, canvas *picture)
+void paint_room(const scene *view, int32_t top, int32_t bottom, canvas *picture)
 {
     matrix axes = camera_axes(&view->camera);
     double centre_x = (view->width_px - 1) / 2.0, centre_y = (view->height_px - 1) / 2.0;
-    for (int32_t y = 0; y < picture->height_px; y++) {
+    for (int32_t y = top; y < bottom; y++) {
         float *row = canvas_row(picture, y);
         for (int32_t x = 0; x < picture->width_px; x++) {
             scene_vector seen = {(x - centre_x) / view->camera.focal_px, (y - centre_y) / view->camera.focal_px, 1};
@@ -120,9 +120,6 @@ bool paint_background(const scene *view, canvas *picture)
         return paint_noise(view, picture);
     case SCENE_POPCORN:
         return paint_popcorn(view, picture);
-    case SCENE_ROOM:
-        paint_room(view, picture);
-        return true;
     case SCENE_PLAIN:
         for (size_t i = 0; i < (size_t)picture->width_px * (size_t)picture->height_px; i++)
             picture->at[i] = (float)view->background.light;

@@ -25,11 +25,6 @@ static int32_t limited(int32_t value, int32_t least, int32_t most)
     return value < least ? least : value > most ? most : value;
 }
 
-void canvas_copy(const canvas *from, canvas *to)
-{
-    memcpy(to->at, from->at, canvas_size(from) * sizeof *from->at);
-}
-
 /* The picture with its border's pixels going on to both sides, and a little more to the right for whole blocks. */
 enum { BLOCK_PX = 16 };
 

@@ -16,9 +16,6 @@ bool canvas_create(canvas *picture, int32_t width_px, int32_t height_px);
 
 void canvas_release(canvas *picture);
 
-/* Both are of the same size. */
-void canvas_copy(const canvas *from, canvas *to);
-
 static inline float *canvas_row(const canvas *picture, int32_t y)
 {
     return picture->at + (size_t)y * (size_t)picture->width_px;

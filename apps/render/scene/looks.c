@@ -63,7 +63,8 @@ static double noise_on(const panel_look *look, const patch *seen, uint64_t layer
     const double faded = (size * size + a * a) * (size * size + b * b), unfaded = size * size * size * size;
     if (unfaded < 0.05 * faded)
         return 0;
-    return unfaded / faded * smooth_noise(look->noise, look->seed + layer, seen->along_m / along_m, seen->across_m / across_m);
+    return unfaded / faded *
+           smooth_noise(look->noise, look->seed + layer, seen->along_m / along_m, seen->across_m / across_m);
 }
 
 static double mixed(double share_dark, double light, double dark)

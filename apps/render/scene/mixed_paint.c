@@ -156,7 +156,7 @@ static bool make_prints(const world *seen, prints *all)
 static void paint_mixed_row(pixel *here, size_t *candidates, const canvas *behind, canvas *picture)
 {
     const world *seen = here->seen;
-    const uint8_t *marks = seen->marks + (size_t)here->y * (size_t)seen->view->width_px;
+    const uint8_t *marks = seen->marks + pixel_index(seen, 0, here->y);
     size_t count = 0;
     for (size_t i = 0; i < seen->count; i++) {
         if (here->y >= seen->things[i].box.top && here->y < seen->things[i].box.bottom)
@@ -177,7 +177,7 @@ bool paint_mixed(const world *seen, prints *all, const canvas *behind, canvas *p
     if (done) {
         const lattice points = lattice_of(34, 21);
         pixel here = {.seen = seen, .all = all, .points = &points};
-        for (here.y = 0; here.y < seen->view->height_px; here.y++)
+        for (here.y = seen->rows.top; here.y < seen->rows.bottom; here.y++)
             paint_mixed_row(&here, candidates, behind, picture);
     }
     free(candidates);

@@ -16,7 +16,7 @@ static void paint_panel(const world *seen, int32_t index, const panel_look *look
 {
     const thing *part = &seen->things[index];
     for (int32_t y = part->box.top; y < part->box.bottom; y++) {
-        const int32_t *front = seen->front + (size_t)y * (size_t)seen->view->width_px;
+        const int32_t *front = seen->front + pixel_index(seen, 0, y);
         float *row = canvas_row(picture, y);
         const pixel_span span = centres_in_row(part, y);
         for (int32_t x = span.left; x < span.right; x++) {

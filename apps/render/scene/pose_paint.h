@@ -4,8 +4,12 @@
 
 #include "canvas.h"
 #include "prints.h"
+#include "world.h"
 
-/* False when memory runs out. */
-bool paint_pose(const scene *view, prints *all, canvas *picture);
+/* A background that is the same from all poses; false when memory runs out. */
+bool paint_backdrop(const scene *view, canvas *behind);
+
+/* Some rows of the picture, before this background. False when memory runs out. */
+bool paint_pose(const scene *view, prints *all, pixel_rows rows, canvas *behind, canvas *picture);
 
 #endif

@@ -314,7 +314,8 @@ typedef struct scene_picture_truth {
     double angle_deg;
 } scene_picture_truth;
 
-/* Only what is visible at least in part; when more is than there is room for, the first. */
+/* Only what is visible at least in part; when more is than there is room for, the first. All of it as the camera sees
+ * it in the middle of the exposure; corners, with a rolling shutter, where their rows see them. */
 typedef struct scene_truth {
     scene_cm_truth cms[SCENE_CMS_MAX];
     size_t cm_count;

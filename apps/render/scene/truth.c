@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "cover.h"
-#include "elementary.h"
+#include "exposure.h"
 #include "geometry.h"
 #include "world.h"
 
@@ -38,13 +38,29 @@ typedef struct measure {
     double distance_m, angle_deg;
 } measure;
 
+/* Where a place is seen when its row is exposed: that row is where it is seen, so this comes nearer step by step. */
+static bool project_in_time(const area *part, double along, double across, tapemark_point *point)
+{
+    enum { STEPS = 8 };
+    scene posed = *part->seen->view;
+    if (!project(&part->to_image, along, across, point))
+        return false;
+    for (int i = 0; i < STEPS && posed.move.readout > 0; i++) {
+        posed.camera = camera_after(part->seen->view, row_delay_exposures(&posed, (double)point->y_px));
+        matrix to_image = plane_to_image(&posed, &part->on);
+        if (!project(&to_image, along, across, point))
+            return false;
+    }
+    return true;
+}
+
 static bool corners_of(const area *part, tapemark_point corners[4])
 {
     double right = part->left + part->width, bottom = part->top + part->height;
-    return project(&part->to_image, part->left, part->top, &corners[0]) &&
-           project(&part->to_image, right, part->top, &corners[1]) &&
-           project(&part->to_image, right, bottom, &corners[2]) &&
-           project(&part->to_image, part->left, bottom, &corners[3]);
+    return project_in_time(part, part->left, part->top, &corners[0]) &&
+           project_in_time(part, right, part->top, &corners[1]) &&
+           project_in_time(part, right, bottom, &corners[2]) &&
+           project_in_time(part, part->left, bottom, &corners[3]);
 }
 
 /* Of two in the same plane, the later one covers the earlier. */
@@ -253,7 +269,7 @@ static void add_thing(const world *seen, size_t index, size_t *fronts, scene_tru
 bool find_truth(const scene *view, scene_truth *truth)
 {
     world seen;
-    bool done = world_see(view, &seen);
+    bool done = world_see(view, all_rows(view), &seen);
     size_t *fronts = done ? malloc((seen.count + 1) * sizeof *fronts) : NULL;
     done = fronts != NULL;
     if (done) {

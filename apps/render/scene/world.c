@@ -5,6 +5,10 @@
 
 #include "prints.h"
 
+typedef struct rectangle {
+    double left, top, right, bottom;
+} rectangle;
+
 /* ---- Things in sight ----------------------------------------------------------------------------------- */
 
 static linear row_of(const matrix *m, int i)
@@ -22,21 +26,29 @@ static linear negative(linear a)
     return (linear){-a.x, -a.y, -a.constant};
 }
 
-bool thing_in_sight(const scene *view, const plane *on, double left, double top, double right, double bottom,
-                    bool from_behind, thing *part)
+/* What would be seen of a rectangle in a plane; false when there is nothing. */
+static bool thing_in_sight(const scene *view, const plane *on, rectangle area, bool from_behind, thing *part)
 {
     matrix to_image = plane_to_image(view, on);
-    if (!project_box(view, &to_image, left, top, right, bottom, &part->box) ||
+    if (!project_box(view, &to_image, area.left, area.top, area.right, area.bottom, &part->box) ||
         !image_to_plane(&to_image, from_behind, &part->to_plane))
         return false;
     linear along = row_of(&part->to_plane, 0), across = row_of(&part->to_plane, 1);
     part->near = row_of(&part->to_plane, 2);
-    part->inside[0] = minus(along, left, part->near);
-    part->inside[1] = negative(minus(along, right, part->near));
-    part->inside[2] = minus(across, top, part->near);
-    part->inside[3] = negative(minus(across, bottom, part->near));
+    part->inside[0] = minus(along, area.left, part->near);
+    part->inside[1] = negative(minus(along, area.right, part->near));
+    part->inside[2] = minus(across, area.top, part->near);
+    part->inside[3] = negative(minus(across, area.bottom, part->near));
     part->camera_distance_m = camera_distance_m(view, on);
     return true;
+}
+
+/* Only in the rows that are looked at. */
+static bool limit_box(pixel_rows rows, thing *part)
+{
+    part->box.top = part->box.top < rows.top ? rows.top : part->box.top;
+    part->box.bottom = part->box.bottom > rows.bottom ? rows.bottom : part->box.bottom;
+    return part->box.top < part->box.bottom;
 }
 
 static bool see_panel(const scene *view, size_t index, thing *part)
@@ -44,7 +56,7 @@ static bool see_panel(const scene *view, size_t index, thing *part)
     const scene_panel *panel = &view->panels[index];
     const plane on = plane_of_panel(panel);
     *part = (thing){.kind = THING_PANEL, .index = index};
-    return thing_in_sight(view, &on, 0, 0, panel->width_m, panel->height_m, true, part);
+    return thing_in_sight(view, &on, (rectangle){0, 0, panel->width_m, panel->height_m}, true, part);
 }
 
 static bool see_tape(const scene *view, size_t index, thing *part)
@@ -54,33 +66,39 @@ static bool see_tape(const scene *view, size_t index, thing *part)
     double width = (double)tapemark_segment_width_modules(tape->cm_count, tape->bars);
     int32_t quiet = tape_quiet_columns(tape);
     *part = (thing){.kind = THING_TAPE, .index = index};
-    return thing_in_sight(view, &on, -quiet, -TAPE_QUIET_ROWS, width + quiet,
-                          TAPEMARK_HEIGHT_MODULES + TAPE_QUIET_ROWS, false, part);
+    const rectangle paper = {-quiet, -TAPE_QUIET_ROWS, width + quiet, TAPEMARK_HEIGHT_MODULES + TAPE_QUIET_ROWS};
+    return thing_in_sight(view, &on, paper, false, part);
 }
 
 static bool see_picture(const scene *view, size_t index, thing *part)
 {
     const scene_picture *picture = &view->pictures[index];
     const plane on = plane_of_picture(picture);
-    double border_m = picture->border_m;
+    const double border_m = picture->border_m;
+    const rectangle paper = {-border_m, -border_m, picture->width_m + border_m, picture->height_m + border_m};
     *part = (thing){.kind = THING_PICTURE, .index = index};
-    return thing_in_sight(view, &on, -border_m, -border_m, picture->width_m + border_m, picture->height_m + border_m,
-                          false, part);
+    return thing_in_sight(view, &on, paper, false, part);
 }
 
-bool world_see(const scene *view, world *seen)
+bool world_see(const scene *view, pixel_rows rows, world *seen)
 {
-    *seen = (world){.view = view};
+    *seen = (world){.view = view, .rows = rows};
     size_t most = view->panel_count + view->tape_count + view->picture_count;
     seen->things = malloc((most + 1) * sizeof *seen->things);
     if (seen->things == NULL)
         return false;
-    for (size_t i = 0; i < view->panel_count; i++)
-        seen->count += see_panel(view, i, &seen->things[seen->count]);
-    for (size_t i = 0; i < view->tape_count; i++)
-        seen->count += see_tape(view, i, &seen->things[seen->count]);
-    for (size_t i = 0; i < view->picture_count; i++)
-        seen->count += see_picture(view, i, &seen->things[seen->count]);
+    for (size_t i = 0; i < view->panel_count; i++) {
+        thing *next = &seen->things[seen->count];
+        seen->count += see_panel(view, i, next) && limit_box(rows, next);
+    }
+    for (size_t i = 0; i < view->tape_count; i++) {
+        thing *next = &seen->things[seen->count];
+        seen->count += see_tape(view, i, next) && limit_box(rows, next);
+    }
+    for (size_t i = 0; i < view->picture_count; i++) {
+        thing *next = &seen->things[seen->count];
+        seen->count += see_picture(view, i, next) && limit_box(rows, next);
+    }
     return true;
 }
 
@@ -155,7 +173,7 @@ static void put_panel_in_front(world *seen, int32_t index)
 {
     const thing *part = &seen->things[index];
     for (int32_t y = part->box.top; y < part->box.bottom; y++) {
-        int32_t *front = seen->front + (size_t)y * (size_t)seen->view->width_px;
+        int32_t *front = seen->front + pixel_index(seen, 0, y);
         const pixel_span span = centres_in_row(part, y);
         for (int32_t x = span.left; x < span.right; x++) {
             if (front[x] == NOTHING || !hides(&seen->things[front[x]], part, x, y))
@@ -166,8 +184,9 @@ static void put_panel_in_front(world *seen, int32_t index)
 
 static void mark_mixed(world *seen, const thing *part, int32_t x, int32_t y)
 {
-    if (x >= 0 && y >= 0 && x < seen->view->width_px && y < seen->view->height_px && !is_hidden(seen, part, x, y))
-        seen->marks[(size_t)y * (size_t)seen->view->width_px + (size_t)x] |= MARK_MIXED;
+    bool inside = x >= 0 && y >= seen->rows.top && x < seen->view->width_px && y < seen->rows.bottom;
+    if (inside && !is_hidden(seen, part, x, y))
+        seen->marks[pixel_index(seen, x, y)] |= MARK_MIXED;
 }
 
 /* A place in the image, for lines that leave it far. */
@@ -197,7 +216,7 @@ static bool clip(spot ends[2], bool along_y, double least, double most)
 static void mark_line(world *seen, const thing *part, spot a, spot b)
 {
     spot ends[2] = {a, b};
-    if (!clip(ends, false, -1, seen->view->width_px) || !clip(ends, true, -1, seen->view->height_px))
+    if (!clip(ends, false, -1, seen->view->width_px) || !clip(ends, true, seen->rows.top - 1, seen->rows.bottom))
         return;
     bool steep = fabs(ends[1].y - ends[0].y) > fabs(ends[1].x - ends[0].x);
     double from = steep ? ends[0].y : ends[0].x, to = steep ? ends[1].y : ends[1].x;
@@ -240,7 +259,7 @@ static void mark_outline(world *seen, const thing *part)
 /* Where panels cross, no outline tells. */
 static void mark_changes(world *seen)
 {
-    size_t width = (size_t)seen->view->width_px, count = width * (size_t)seen->view->height_px;
+    size_t width = (size_t)seen->view->width_px, count = pixel_index(seen, 0, seen->rows.bottom);
     for (size_t i = 0; i < count; i++) {
         bool right = (i + 1) % width != 0 && seen->front[i] != seen->front[i + 1];
         bool below = i + width < count && seen->front[i] != seen->front[i + width];
@@ -255,7 +274,7 @@ static void mark_changes(world *seen)
 
 bool world_find_front(world *seen)
 {
-    size_t count = (size_t)seen->view->width_px * (size_t)seen->view->height_px;
+    size_t count = pixel_index(seen, 0, seen->rows.bottom);
     seen->front = malloc(count * sizeof *seen->front);
     seen->marks = calloc(count, 1);
     if (seen->front == NULL || seen->marks == NULL)
@@ -275,7 +294,7 @@ bool world_find_front(world *seen)
 
 bool may_paint(world *seen, int32_t thing_index, bool partial, int32_t x, int32_t y)
 {
-    size_t at = (size_t)y * (size_t)seen->view->width_px + (size_t)x;
+    size_t at = pixel_index(seen, x, y);
     uint8_t *marks = &seen->marks[at];
     if (*marks & MARK_PARTIAL || (partial && *marks & MARK_TOUCHED))
         *marks |= MARK_MIXED;

@@ -36,16 +36,32 @@ enum {
 
 enum { NOTHING = -1 };
 
+/* Of the image: the first and the one after the last. */
+typedef struct pixel_rows {
+    int32_t top, bottom;
+} pixel_rows;
+
+static inline pixel_rows all_rows(const scene *view)
+{
+    return (pixel_rows){0, view->height_px};
+}
+
 typedef struct world {
     const scene *view;
+    pixel_rows rows;     /* all that is looked at */
     thing *things;       /* panels, tapes, pictures, each in their order */
     size_t count;
-    int32_t *front;      /* of each pixel, the thing that is in front at its centre, or NOTHING; shadows never */
-    uint8_t *marks;      /* of each pixel */
+    int32_t *front;      /* of each pixel of the rows, what is in front at its centre, or NOTHING; shadows never */
+    uint8_t *marks;      /* of each pixel of the rows */
 } world;
 
+static inline size_t pixel_index(const world *seen, int32_t x, int32_t y)
+{
+    return (size_t)(y - seen->rows.top) * (size_t)seen->view->width_px + (size_t)x;
+}
+
 /* Finds the things. False when memory runs out; either way, world_release() is to be called. */
-bool world_see(const scene *view, world *seen);
+bool world_see(const scene *view, pixel_rows rows, world *seen);
 void world_release(world *seen);
 
 /* Finds what is in front: panels only; tapes and pictures come when they are painted. Where the edges of panels are
@@ -58,10 +74,6 @@ bool may_paint(world *seen, int32_t thing_index, bool partial, int32_t x, int32_
 
 /* Shadows hide nothing. */
 bool is_shadow(const scene *view, const thing *part);
-
-/* What would be seen of a rectangle in a plane; false when there is nothing. */
-bool thing_in_sight(const scene *view, const plane *on, double left, double top, double right, double bottom,
-                    bool from_behind, thing *part);
 
 static inline bool thing_at(const thing *part, double x_px, double y_px)
 {
@@ -95,7 +107,7 @@ static inline bool hides(const thing *front, const thing *behind, double x_px, d
 /* Whether what is in front at a pixel hides a thing there. */
 static inline bool is_hidden(const world *seen, const thing *part, int32_t x, int32_t y)
 {
-    int32_t front = seen->front[(size_t)y * (size_t)seen->view->width_px + (size_t)x];
+    int32_t front = seen->front[pixel_index(seen, x, y)];
     return front != NOTHING && hides(&seen->things[front], part, x, y);
 }
 
