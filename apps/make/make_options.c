@@ -287,7 +287,7 @@ static bool complete(const option_set set, int plan_count, make_options *options
         refuse_both(set, OPTION_SCALE, OPTION_SCALE_X, error) ||
         refuse_both(set, OPTION_SCALE, OPTION_SCALE_Y, error))
         return false;
-    if (options->output_path == NULL) {
+    if (options->output_path == NULL || options->output_path[0] == '\0') {
         error_text_set(error, "where to? -o DIRECTORY is missing");
         return false;
     }
