@@ -392,8 +392,12 @@ void drawing_picture(drawing *page, const uint8_t *pixels, int32_t width_px, int
     cairo_save(page->context);
     cairo_translate(page->context, from.x_mm, from.y_mm);
     cairo_scale(page->context, (to.x_mm - from.x_mm) / width_px, (to.y_mm - from.y_mm) / height_px);
+    cairo_rectangle(page->context, 0, 0, width_px, height_px);
+    cairo_clip(page->context);
     cairo_set_source_surface(page->context, picture, 0, 0);
     cairo_pattern_set_filter(cairo_get_source(page->context), CAIRO_FILTER_GOOD);
+    /* Else its outermost pixels would fade into what lies around it. */
+    cairo_pattern_set_extend(cairo_get_source(page->context), CAIRO_EXTEND_PAD);
     cairo_paint_with_alpha(page->context, opacity);
     cairo_restore(page->context);
     cairo_surface_destroy(picture);

@@ -87,8 +87,8 @@ static void draw_ruler(drawing *page, double baseline_mm)
     const double half_line_mm = 0.05;
     drawing_add_line(page, (drawing_point){-half_line_mm, baseline_mm},
                      (drawing_point){RULER_MM + half_line_mm, baseline_mm});
-    for (int x_mm = 0; x_mm <= RULER_MM; x_mm++) {
-        double tick_mm = x_mm % 10 == 0 ? 2.8 : x_mm % 5 == 0 ? 2.0 : 1.2;
+    for (int x_mm = 0; x_mm <= RULER_MM; x_mm += 5) {
+        double tick_mm = x_mm % 50 == 0 ? 2.8 : x_mm % 10 == 0 ? 2.2 : 1.4;
         drawing_add_line(page, (drawing_point){x_mm, baseline_mm}, (drawing_point){x_mm, baseline_mm - tick_mm});
     }
     drawing_stroke(page, 2 * half_line_mm, 0);
