@@ -55,15 +55,3 @@ bool layout_map(const plan *wanted, const tape_layout *layout, tape_map *map, er
     }
     return true;
 }
-
-void layout_id_bits(int32_t id, char word[79], char checksum[9])
-{
-    tapemark_word bits = {{0}};
-    tapemark_word_from_id(id, &bits);
-    uint8_t sum = tapemark_word_checksum(&bits);
-    for (unsigned i = 0; i < TAPEMARK_DATA_BITS; i++)
-        word[i] = tapemark_word_bit(&bits, i) ? '1' : '0';
-    for (unsigned i = 0; i < 8; i++)
-        checksum[i] = (sum >> (7 - i) & 1) != 0 ? '1' : '0';
-    word[TAPEMARK_DATA_BITS] = checksum[8] = '\0';
-}

@@ -8,7 +8,4 @@
 /* False when memory runs out. The caller releases the map. */
 bool layout_map(const plan *wanted, const tape_layout *layout, tape_map *map, error_text *error);
 
-/* The printed bits of an id as characters, for maps in the format of the marker's inventors. */
-void layout_id_bits(int32_t id, char word[79], char checksum[9]);
-
 #endif

@@ -2,6 +2,7 @@
 #include "layout_map.h"
 #include "make_options.h"
 #include "make_summary.h"
+#include "map_ids.h"
 #include "output_directory.h"
 #include "print.h"
 
@@ -123,7 +124,7 @@ static bool write_map_with(make_run *run, const char *path, bool papers)
     error_text reason;
     if (!layout_map(&run->wanted, &run->layout, &map, &run->error))
         return false;
-    bool done = papers ? map_file_write_paper(path, &map, layout_id_bits, &reason)
+    bool done = papers ? map_file_write_paper(path, &map, map_ids_bits, &reason)
                        : map_file_write(path, &map, &reason);
     if (!done)
         error_text_set(&run->error, "%.200s: %.190s", path, reason.text);
