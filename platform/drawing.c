@@ -20,6 +20,30 @@ struct drawing {
 static const double PT_PER_MM = 72.0 / 25.4;
 static const double MM_PER_INCH = 25.4;
 
+/* fontconfig keeps what it has read of the fonts until the process ends, which leak checkers take for lost. They ask
+ * programs for what is to be left out, and whether to tell, by these names. */
+#if defined(__SANITIZE_ADDRESS__)
+#define DRAWING_LEAK_CHECKED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define DRAWING_LEAK_CHECKED
+#endif
+#endif
+#ifdef DRAWING_LEAK_CHECKED
+const char *__lsan_default_suppressions(void);
+const char *__lsan_default_options(void);
+
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig";
+}
+
+const char *__lsan_default_options(void)
+{
+    return "print_suppressions=0";
+}
+#endif
+
 /* ---- Opening and closing ------------------------------------------------------------------------------- */
 
 static cairo_status_t write_bytes(void *closure, const unsigned char *bytes, unsigned int size)
