@@ -36,7 +36,11 @@ static void tell(const frame_output *output, size_t index, const char *reason, e
     char name[PATH_MAX_BYTES];
     bool standard = strcmp(output->wanted.path, "-") == 0;
     bool named = name_file(output, index, name, sizeof name);
-    error_text_set(error, "%.200s: %.150s", standard ? "standard output" : named ? name : output->wanted.path, reason);
+    error_text_set(error, "%.200s: %.150s",
+                   standard ? "standard output"
+                   : named  ? name
+                            : output->wanted.path,
+                   reason);
 }
 
 static bool open_next(frame_output *output, error_text *error)

@@ -21,7 +21,8 @@ static double distance_m(map_point a, map_point b)
 static scene_line lengthened(scene_line line, double by_m)
 {
     double length_m = line_length_m(line);
-    double x_m = by_m * (line.to_x_m - line.from_x_m) / length_m, y_m = by_m * (line.to_y_m - line.from_y_m) / length_m;
+    double x_m = by_m * (line.to_x_m - line.from_x_m) / length_m,
+           y_m = by_m * (line.to_y_m - line.from_y_m) / length_m;
     return (scene_line){line.from_x_m - x_m, line.from_y_m - y_m, line.to_x_m + x_m, line.to_y_m + y_m};
 }
 

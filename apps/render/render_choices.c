@@ -41,7 +41,8 @@ static bool choose_format(render_options *all, error_text *error)
         return false;
     }
     if (!capture_fits(all->format, all->view.width_px, all->view.height_px)) {
-        error_text_set(error, "--size: %s comes in groups of pixels: sides must be multiples of 4", all->format->name);
+        error_text_set(error, "--size: %s comes in groups of pixels: sides must be multiples of 4",
+                       all->format->name);
         return false;
     }
     if (all->jpeg_quality > 0 && capture_bits(all->format) > 8) {

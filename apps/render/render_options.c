@@ -88,7 +88,8 @@ static bool take_map(render_options *all, const char *text, error_text *error)
 
 static bool take_bars(render_options *all, const char *text, error_text *error)
 {
-    static const char *const names[] = {[RENDER_NO_BARS] = "no", [RENDER_BARS] = "yes", [RENDER_BARS_OF_TMS] = "auto"};
+    static const char *const names[] = {
+        [RENDER_NO_BARS] = "no", [RENDER_BARS] = "yes", [RENDER_BARS_OF_TMS] = "auto"};
     size_t choice;
     if (!parse_choice(text, names, sizeof names / sizeof *names, &choice, error))
         return false;

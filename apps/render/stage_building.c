@@ -8,8 +8,8 @@
 /* Lines of tape, and not walls, are on a map: what is less than this off a line hangs on its wall, */
 static const double same_line_m = 0.001;
 
-/* and walls go on to the next one's beginning when that is nearer than a CM that found no room, and the corner: there is
- * no door so narrow. */
+/* and walls go on to the next one's beginning when that is nearer than a CM that found no room, and the corner: there
+ * is no door so narrow. */
 static const double gap_closed_cms = 1.1, gap_closed_m = 0.25;
 
 /* ---- Panels -------------------------------------------------------------------------------------------- */
@@ -73,7 +73,8 @@ static bool on_same_line(scene_line first, scene_line second)
 static bool meet(scene_line a, scene_line b, double *x_m, double *y_m)
 {
     const double least_sine = 0.05;
-    double ax = a.to_x_m - a.from_x_m, ay = a.to_y_m - a.from_y_m, bx = b.to_x_m - b.from_x_m, by = b.to_y_m - b.from_y_m;
+    double ax = a.to_x_m - a.from_x_m, ay = a.to_y_m - a.from_y_m, bx = b.to_x_m - b.from_x_m,
+           by = b.to_y_m - b.from_y_m;
     double sine = ax * by - ay * bx;
     if (fabs(sine) < least_sine * line_length_m(a) * line_length_m(b))
         return false;

@@ -58,7 +58,8 @@ void stage_set_row(stage *here)
     scene_picture *picture = here->pictures;
     for (size_t i = 0; i < all->thing_count; i++) {
         if (all->things[i].picture_path == NULL) {
-            tape->origin_m = take_place(&line, tape_width_m(tape), TAPEMARK_HEIGHT_MODULES * tape->module_m, all->gap_m);
+            tape->origin_m =
+                take_place(&line, tape_width_m(tape), TAPEMARK_HEIGHT_MODULES * tape->module_m, all->gap_m);
             tape->along = line.along;
             tape->down = line.down;
             tape++;

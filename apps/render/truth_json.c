@@ -33,7 +33,8 @@ static void put_view(FILE *file, const view_truth *view)
     put_corners(file, view->corners);
     fprintf(file, ", \"full\": %s, \"px_along\": %.3f, \"px_across\": %.3f, \"px_min_sv\": %.3f, \"vis_frac\": %.3f",
             view->whole ? "true" : "false", view->px_along, view->px_across, view->px_min, view->visible);
-    fprintf(file, ", \"outside\": %.3f, \"covered\": %.3f, \"hidden\": %.3f, \"distance_m\": %.3f, \"angle_deg\": %.2f}",
+    fprintf(file,
+            ", \"outside\": %.3f, \"covered\": %.3f, \"hidden\": %.3f, \"distance_m\": %.3f, \"angle_deg\": %.2f}",
             view->lost.outside, view->lost.covered, view->lost.hidden, view->distance_m, view->angle_deg);
 }
 
@@ -67,8 +68,8 @@ static void put_picture(FILE *file, const scene_picture_truth *entry)
 /* As things stand on a plan, see scene_plan_point(). */
 static void put_camera(FILE *file, const scene_camera *camera)
 {
-    fprintf(file, "\"camera\": {\"focal_px\": %.3f, \"x_m\": %.4f, \"y_m\": %.4f, \"height_m\": %.4f", camera->focal_px,
-            rounded(camera->position_m.x, 1e-4), rounded(-camera->position_m.z, 1e-4),
+    fprintf(file, "\"camera\": {\"focal_px\": %.3f, \"x_m\": %.4f, \"y_m\": %.4f, \"height_m\": %.4f",
+            camera->focal_px, rounded(camera->position_m.x, 1e-4), rounded(-camera->position_m.z, 1e-4),
             rounded(-camera->position_m.y, 1e-4));
     fprintf(file, ", \"heading_deg\": %.3f, \"pitch_deg\": %.3f, \"roll_deg\": %.3f}",
             rounded(camera->yaw_deg - 90, 1e-3), rounded(camera->pitch_deg, 1e-3), rounded(camera->roll_deg, 1e-3));

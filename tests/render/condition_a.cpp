@@ -125,8 +125,8 @@ cv::Matx33d homography_of(const std::array<cv::Point2d, 4> &corners, double widt
 }
 
 // With (x, y) from the middle of the picture, a right angle between the columns a and b of a homography reads
-// (ax bx + ay by) / focal² + aw bw = 0. All tapes together, each weighed by how long its columns are at the focal length
-// found before, give one focal length.
+// (ax bx + ay by) / focal² + aw bw = 0. All tapes together, each weighed by how long its columns are at the focal
+// length found before, give one focal length.
 double focal_of(const std::vector<walk_frame> &frames)
 {
     const cv::Matx33d to_middle(1, 0, -(columns - 1) / 2.0, 0, 1, -(rows - 1) / 2.0, 0, 0, 1);

@@ -29,7 +29,8 @@ double bilinear(const cv::Mat &gray, cv::Point2d at)
 }
 
 // Over the middle of a rectangle of modules.
-double mean_of(const cv::Mat &gray, const cv::Matx33d &to_picture, double left, double top, double width, double height)
+double mean_of(const cv::Mat &gray, const cv::Matx33d &to_picture, double left, double top, double width,
+               double height)
 {
     constexpr int steps = 5;
     constexpr double inside = 0.6;
@@ -82,7 +83,8 @@ cv::Mat ideal_of(int id, const cv::Matx33d &to_picture, const cv::Rect &box)
     cv::Mat fine(samples * box.height, samples * box.width, CV_64F, cv::Scalar(0)), ideal;
     for (int y = 0; y < fine.rows; y++) {
         for (int x = 0; x < fine.cols; x++) {
-            const cv::Point2d at = mapped(to_modules, box.x + (x + 0.5) / samples - 0.5, box.y + (y + 0.5) / samples - 0.5);
+            const cv::Point2d at =
+                mapped(to_modules, box.x + (x + 0.5) / samples - 0.5, box.y + (y + 0.5) / samples - 0.5);
             const int column = static_cast<int>(std::floor(at.x)), row = static_cast<int>(std::floor(at.y));
             if (column >= 0 && column < columns && row >= 0 && row < rows)
                 fine.at<double>(y, x) = modules[static_cast<std::size_t>(row * columns + column)];
@@ -108,7 +110,8 @@ void measure_blur(const cv::Mat &seen, const cv::Mat &ideal, const cv::Mat &insi
     look.blur_px = first + step * best;
     look.unexplained = left[static_cast<std::size_t>(best)];
     if (best > 0 && best < steps - 1) {
-        const double before = left[static_cast<std::size_t>(best - 1)], after = left[static_cast<std::size_t>(best + 1)];
+        const double before = left[static_cast<std::size_t>(best - 1)],
+                     after = left[static_cast<std::size_t>(best + 1)];
         look.blur_px += step * (before - after) / (2 * (before + after - 2 * look.unexplained));
     }
 }
@@ -136,7 +139,8 @@ marker_look look_of(const cv::Mat &gray, int id, const cv::Matx33d &to_picture)
     measure_blur(seen, ideal_of(id, to_picture, box), inside, look);
     for (int row = 0; row < static_cast<int>(cm_height); row++) {
         for (int column = 0; column < static_cast<int>(cm_width); column++)
-            look.cells.push_back((look.light - mean_of(gray, to_picture, column, row, 1, 1)) / (look.light - look.dark));
+            look.cells.push_back((look.light - mean_of(gray, to_picture, column, row, 1, 1)) /
+                                 (look.light - look.dark));
     }
     return look;
 }

@@ -16,8 +16,8 @@ struct marker_look {
 // `to_picture` maps (modules along, modules across, 1) from the top left corner of the CM's ink.
 marker_look look_of(const cv::Mat &gray, int id, const cv::Matx33d &to_picture);
 
-// Standard deviation of what is finer than three pixels, in gray levels, around a place: of the noise, where nothing else
-// is.
+// Standard deviation of what is finer than three pixels, in gray levels, around a place: of the noise, where nothing
+// else is.
 double noise_at(const cv::Mat &gray, cv::Point2d place);
 
 double median_of(std::vector<double> values);

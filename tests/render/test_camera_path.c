@@ -82,7 +82,8 @@ static void what_is_wrong_is_told_with_its_line(void **state)
     assert_refused(HEAD "0,1,1,1,1e5\n", "line 2: the heading is out of range");
     assert_refused(HEAD "1e7,1,1,1,1\n", "line 2: the time is out of range");
     assert_refused(HEAD "0,1,1,1,5\n0,1,1,1,5\n", "line 3: time_s does not ascend: 0 after 0");
-    assert_refused("time_s,x_m,y_m,height_m,heading_deg,pitch_deg\n0,1,1,1,1,100\n", "line 2: the pitch is out of range");
+    assert_refused("time_s,x_m,y_m,height_m,heading_deg,pitch_deg\n0,1,1,1,1,100\n",
+                   "line 2: the pitch is out of range");
 }
 
 static void zero_bytes_and_missing_files_are_refused(void **state)

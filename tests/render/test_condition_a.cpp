@@ -1,5 +1,5 @@
-// Rendered frames are like those of the marker's inventors: a stretch of their walk is rendered again, from where their
-// camera was, with `--like condition-a`, and both are measured.
+// Rendered frames are like those of the marker's inventors: a stretch of their walk is rendered again, from where
+// their camera was, with `--like condition-a`, and both are measured.
 #include "condition_a.hpp"
 #include "likeness.hpp"
 #include "paper_data.hpp"
@@ -60,15 +60,16 @@ scene_vector vector_of(const cv::Vec3d &v)
     return {v[0], v[1], v[2]};
 }
 
-// Where a tape is, seen from the camera: the columns of its homography are its directions and its corner. Their tapes are
-// some percent longer than they are high, so what is rendered has their length, and their middle line.
+// Where a tape is, seen from the camera: the columns of its homography are its directions and its corner. Their tapes
+// are some percent longer than they are high, so what is rendered has their length, and their middle line.
 scene_tape place(const walk_tape &seen, const std::vector<std::int32_t> &ids, const cv::Mat &gray)
 {
     constexpr double middle = TAPEMARK_HEIGHT_MODULES / 2.0;
     const cv::Matx33d to_ray(1 / focal_px, 0, -(gray.cols - 1) / 2.0 / focal_px, 0, 1 / focal_px,
                              -(gray.rows - 1) / 2.0 / focal_px, 0, 0, 1);
     const cv::Matx33d h = to_ray * homography_of(seen.corners, width_modules_of(seen));
-    const cv::Vec3d columns[] = {{h(0, 0), h(1, 0), h(2, 0)}, {h(0, 1), h(1, 1), h(2, 1)}, {h(0, 2), h(1, 2), h(2, 2)}};
+    const cv::Vec3d columns[] = {
+        {h(0, 0), h(1, 0), h(2, 0)}, {h(0, 1), h(1, 1), h(2, 1)}, {h(0, 2), h(1, 2), h(2, 2)}};
     scene_tape tape = scene_tape_of(ids.data(), ids.size(), seen.bars);
     const double scale = tape.module_m / cv::norm(columns[0]);
     const cv::Vec3d along = columns[0] / cv::norm(columns[0]);
@@ -190,7 +191,8 @@ template <typename Getter> std::vector<double> all_of(Getter getter)
 }
 
 // A row of the table: medians over all CMs.
-void assert_alike(const char *what, const std::vector<double> &theirs, const std::vector<double> &ours, double tolerance)
+void assert_alike(const char *what, const std::vector<double> &theirs, const std::vector<double> &ours,
+                  double tolerance)
 {
     const double their = median_of(theirs), our = median_of(ours);
     print_message("%-36s theirs %7.3f   rendered %7.3f   may differ by %.3f\n", what, their, our, tolerance);
@@ -241,11 +243,10 @@ void cells_are_alike(void **)
     const double correlation = median_of(all_of([](const pair_of_looks &p) {
         return correlation_of(p.theirs.cells, p.ours.cells);
     }));
-    const double difference = median_of(all_of([](const pair_of_looks &p) {
-        return difference_of(p.theirs.cells, p.ours.cells);
-    }));
-    print_message("cells of a CM, of %zu: correlation %.3f, difference %.3f of the contrast\n", pairs.size(), correlation,
-                  difference);
+    const double difference =
+        median_of(all_of([](const pair_of_looks &p) { return difference_of(p.theirs.cells, p.ours.cells); }));
+    print_message("cells of a CM, of %zu: correlation %.3f, difference %.3f of the contrast\n", pairs.size(),
+                  correlation, difference);
     assert_true(correlation > 0.985);
     assert_true(difference < 0.07);
 }

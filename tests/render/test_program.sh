@@ -17,7 +17,8 @@ printf 'time_s,x_m,y_m,height_m,heading_deg\n0,1,2,1,-90\n1,2,2,1,-90\n' >given/
 cat >given/map.json <<'MAP'
 {"format": "tapemark-map", "version": 1, "units": "m", "plan": {"width_m": 4, "height_m": 3}, "module_mm": 10,
  "segments": [
-  {"code": "110", "on": "wall", "above_floor_m": 0.1, "start": [1.0, 0.0], "end": [1.98, 0.0], "direction_deg": 0, "cms": [
+  {"code": "110", "on": "wall", "above_floor_m": 0.1, "start": [1.0, 0.0], "end": [1.98, 0.0], "direction_deg": 0,
+   "cms": [
    {"id": 1, "start": [1.08, 0.0], "end": [1.4, 0.0], "direction_deg": 0},
    {"id": 2, "start": [1.33, 0.0], "end": [1.65, 0.0], "direction_deg": 0},
    {"id": -3, "start": [1.58, 0.0], "end": [1.9, 0.0], "direction_deg": 0}]}]}

@@ -158,9 +158,11 @@ static void defaults_are_those_of_the_help(void **state)
 static void distance_and_focal_length_give_the_size(void **state)
 {
     (void)state;
-    assert_parsed((const char *const[]){"--distance", "2m", "--module", "10mm", "--focal", "800", "-o", "a.png", NULL});
+    assert_parsed(
+        (const char *const[]){"--distance", "2m", "--module", "10mm", "--focal", "800", "-o", "a.png", NULL});
     assert_true(all.pose.px_per_module > 3.999 && all.pose.px_per_module < 4.001);
-    assert_parsed((const char *const[]){"--distance", "50cm", "--module", "10mm", "--size", "320x240", "a.png", NULL});
+    assert_parsed(
+        (const char *const[]){"--distance", "50cm", "--module", "10mm", "--size", "320x240", "a.png", NULL});
     assert_true(all.pose.px_per_module > 6.399 && all.pose.px_per_module < 6.401);
 }
 
@@ -179,8 +181,8 @@ static void pictures_have_names_with_colons(void **state)
 static void places_belong_to_what_is_before_them(void **state)
 {
     (void)state;
-    assert_parsed((const char *const[]){"--ids", "5", "--at", "1,2,0.5,90", "--ids", "6", "--at", "3,4,0,-90", "--camera",
-                                        "1,2,1.5,45,-10,2", "a.png", NULL});
+    assert_parsed((const char *const[]){"--ids", "5", "--at", "1,2,0.5,90", "--ids", "6", "--at", "3,4,0,-90",
+                                        "--camera", "1,2,1.5,45,-10,2", "a.png", NULL});
     assert_int_equal(all.kind, RENDER_ON_PLAN);
     assert_true(all.things[0].x_m == 1 && all.things[0].above_floor_m == 0.5 && all.things[0].facing_deg == 90);
     assert_true(all.things[1].y_m == 4 && all.things[1].above_floor_m == 0);
@@ -190,7 +192,8 @@ static void places_belong_to_what_is_before_them(void **state)
 static void what_comes_behind_a_likeness_changes_it(void **state)
 {
     (void)state;
-    assert_parsed((const char *const[]){"--like", "condition-a", "--defocus", "2", "--size", "1080x823", "a.png", NULL});
+    assert_parsed(
+        (const char *const[]){"--like", "condition-a", "--defocus", "2", "--size", "1080x823", "a.png", NULL});
     assert_true(all.view.optics.defocus_px == 2);
     assert_true(all.view.sensor.shot_noise == 0);
     assert_true(all.focal_px > 1400 && all.focal_px < 1560);
