@@ -9,7 +9,8 @@
  *     largura, altura the width and height of the plan, in metres; may be left out
  *
  * Other keys are let pass: x1, y1, x2 and y2, the ends of a TM, contradict the places of its CMs in the only map that
- * was published. Some CMs of a TM may be missing, and there may be gaps between them.
+ * was published. Some CMs of a TM may be missing, and there may be gaps between them; but those that are there
+ * follow its code, in the order of the file or in that of the ids without their signs.
  */
 #include "json_file.h"
 #include "map_read.h"
@@ -200,11 +201,16 @@ static void group_entries(map_entry *entries, size_t count)
     qsort(entries, count, sizeof *entries, compare_groups);
 }
 
-static bool signs_follow_code(const map_entry *entries)
+/* Whether each CM, one after another, finds its 1 or 0 in what is left of the code. */
+static bool signs_follow_code(const map_entry *entries, size_t count)
 {
-    for (size_t i = 0; entries[0].code[i] != '\0'; i++)
-        if ((entries[0].code[i] == '1') != (entries[i].id >= 0))
+    const char *rest = entries[0].code;
+    for (size_t i = 0; i < count; i++) {
+        rest = strchr(rest, entries[i].id >= 0 ? '1' : '0');
+        if (rest == NULL)
             return false;
+        rest++;
+    }
     return true;
 }
 
@@ -229,11 +235,11 @@ static bool check_tm(map_entry *entries, size_t count, error_text *error)
                        name, code, light, count - light, entries[0].number);
         return false;
     }
-    if (count < length || signs_follow_code(entries))
+    if (signs_follow_code(entries, count))
         return true;
     size_t first_number = entries[0].number;
     qsort(entries, count, sizeof *entries, compare_magnitudes);
-    if (signs_follow_code(entries))
+    if (signs_follow_code(entries, count))
         return true;
     error_text_set(error, "tape marker %s has the code %s, which the signs of its ids follow neither in the order of "
                    "the file nor in that of the ids (entry %zu)", name, code, first_number);

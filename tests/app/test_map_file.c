@@ -168,6 +168,7 @@ static void contradictions_name_the_entries(void **state)
                  OF_TM(-4, 0, 0, 100, a) "]", "1 light and 3 dark");
     expect_error("[" OF_TM(-1, 0, 0, 100, a) "," OF_TM(2, 0, 0, 100, a) "," OF_TM(-3, 0, 0, 100, a) "]",
                  "which the signs of its ids follow neither");
+    expect_error("[" OF_TM(-1, 0, 0, 100, a) "," OF_TM(2, 0, 0, 100, a) "]", "follow neither");
 }
 
 /* What a parser would lose or choke on. */
@@ -181,6 +182,11 @@ static void texts_that_are_no_json(void **state)
     assert_false(map_file_read(temporary_file(".json", zero, sizeof zero - 1), map_ids_check, &map, &error));
     assert_non_null(strstr(error.text, "line 2, column 14: a zero byte"));
     expect_error("[{\"idcm_decimal\":1,\"x\\u0000\":0}]", "line 1, column 22: \\u0000 is not allowed");
+    /* Punctuation in texts does not count, nor does a quotation mark behind a backslash end them. */
+    static const char quoted[] = "[{\"idcm_decimal\":1,\"x\":0,\"y\":0,\"a\":\"\\\"[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["
+                                 "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"}]";
+    assert_true(read_map(quoted, &map, &error));
+    tape_map_release(&map);
     memset(deep, '[', sizeof deep - 1);
     expect_error(deep, "line 1, column 65: nested too deeply");
     size_t size = 2 * 8000001;

@@ -150,6 +150,7 @@ static void segments_are_checked(void **state)
     expect_error("\"on\":\"floor\"", "\"on\":0", "segments[1]: \"on\" must be");
     expect_error("\"on\":\"floor\"", "\"on\":\"floor\",\"above_floor_m\":1", "segments[1]: is on the floor, so");
     expect_error("\"above_floor_m\":0.03", "\"above_floor_m\":-1", "segments[0]: \"above_floor_m\" must be");
+    expect_error("\"above_floor_m\":0.03", "\"above_floor_m\":1001", "segments[0]: \"above_floor_m\" must be");
     expect_error("\"above_floor_m\":0.03", "\"above_floor_m\":null", "segments[0]: \"above_floor_m\" must be");
     expect_error("\"code\":\"100\"", "\"code\":\"1O0\"", "segments[0]: \"code\" must be 3 to 64 characters");
     expect_error("\"code\":\"100\"", "\"code\":\"10\"", "segments[0]: \"code\" must be 3 to 64 characters");
@@ -159,6 +160,10 @@ static void segments_are_checked(void **state)
     expect_error("\"code\":\"100\",", "",
                  "segments[0]: \"cms\" has 3 code markers, but a segment without \"code\" has 1");
     expect_error("\"complete\":false", "\"complete\":true", "segments[2]: \"cms\" has 2 code markers");
+    expect_error("{\"id\":5,\"centre\":[2,1]},{\"id\":-7,\"centre\":[2,1.5]}", "",
+                 "segments[2]: is not \"complete\", so \"cms\" needs 1 to 3 code markers, not 0");
+    expect_error("\"code\":\"100\",", "\"code\":\"100\",\"complete\":false,",
+                 "segments[0]: is not \"complete\", so \"cms\" needs 1 to 2 code markers, not 3");
     expect_error("\"complete\":false", "\"complete\":0", "segments[2]: \"complete\" must be true or false");
     expect_error("\"code\":\"1110\"", "\"code\":\"1111\"", "segments[2].cms[1]: the id -7 is dark");
     expect_error("\"code\":\"1110\",", "", "segments[2]: \"cms\" has 2 code markers");
@@ -174,11 +179,14 @@ static void segments_are_checked(void **state)
                  "segments[1]: has \"direction_deg\", but no \"start\"");
     expect_error("\"start\":[3,2],\"end\":[3,2.32],\"dir", "\"end\":[3,2.32],\"dir",
                  "segments[1]: has \"end\", but no");
+    expect_error("\"start\":[3,2],\"end\":[3,2.32]", "\"start\":[3,2.32],\"end\":[3,2]",
+                 "segments[1]: \"direction_deg\" is 90.00, but from \"start\" to \"end\" it is 270.00");
     expect_error("\"start\":[3,2]", "\"start\":[3,2.32]", "segments[1]: \"start\" and \"end\" are the same place");
     expect_error("\"start\":[3,2]", "\"start\":[3]", "segments[1]: \"start\" must be a place on the plan in metres");
     expect_error("\"start\":[3,2]", "\"start\":[3,2,1]", "segments[1]: \"start\" must be a place");
     expect_error("\"start\":[3,2]", "\"start\":{\"x\":3,\"y\":2}", "segments[1]: \"start\" must be a place");
     expect_error("\"start\":[3,2]", "\"start\":[3,1e999]", "segments[1]: \"start\" must be a place");
+    expect_error("\"start\":[3,2]", "\"start\":[1e999,2]", "segments[1]: \"start\" must be a place");
     expect_error("\"start\":[3,2]", "\"start\":[3,\"2\"]", "segments[1]: \"start\" must be a place");
     expect_error("\"start\":[3,2],\"end\":[3,2.32]", "\"start\":[3,3],\"end\":[3,3.32]",
                  "segments[1]: \"end\", [3.000, 3.320], lies outside of the plan, 4.000 m x 3.000 m");

@@ -168,6 +168,9 @@ static void maps_that_cannot_be_written_leave_nothing(void **state)
         assert_false(map_file_write_paper(path, &map, map_ids_bits, &error));
     }
     map.cms[7].centre.y_m = 0;
+    map.segments[1].above_floor_m = NAN;
+    assert_false(map_file_write(path, &map, &error));
+    map.segments[1].above_floor_m = 0;
     map.segments[1].cm_count = 1000;
     assert_false(map_file_write(path, &map, &error));
     map.segment_count = 0;

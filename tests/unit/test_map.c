@@ -236,6 +236,7 @@ static void flaws_of_cms_are_found(void **state)
     EXPECT_FLAW(15, cms[15].dy, NAN);
     EXPECT_FLAW(1, cms[1].tm, TM_COUNT);
     EXPECT_FLAW(1, cms[1].tm, -2);
+    EXPECT_FLAW(0, cms[0].tm, -2);
     EXPECT_FLAW(0, cms[0].slot, 0);      /* of no TM */
     EXPECT_FLAW(5, cms[5].slot, 3);      /* of three */
     EXPECT_FLAW(5, cms[5].slot, -2);
@@ -330,6 +331,7 @@ static void tm_and_cms_that_contradict_each_other(void **state)
     expect_place(locate("1000", true, READ({1, 0})), TAPEMARK_CODE_OF_OTHER_TM, -1, false);
     expect_place(locate("100", true, READ({1, 0}, {-2, 2})), TAPEMARK_CM_IN_OTHER_SLOT, -1, false);
     expect_place(locate("100", false, READ({-2, 2})), TAPEMARK_CM_IN_OTHER_SLOT, -1, false);
+    expect_place(locate("100", false, READ({-5, 0})), TAPEMARK_CM_IN_OTHER_SLOT, -1, false);
     expect_place(locate("100", true, READ({-4, 2}, {6, 0})), TAPEMARK_RUNS_BACKWARDS, -1, false);
     expect_place(locate("101", true, READ({22, 0})), TAPEMARK_RUNS_BACKWARDS, -1, false);
 }
