@@ -1,10 +1,11 @@
 # tapemark-make as its users meet it: files, summary, errors, exit status, nothing half-written.
-# usage: test_program.sh FOLDER-OF-EXPECT.SH tapemark-make tapemark-decode VERSION
+# usage: test_program.sh FOLDER-OF-EXPECT.SH tapemark-make tapemark-decode VERSION README.md
 set -eu
 here=$1
 program=$2
 decode=$3
 version=$4
+readme=$(cd "$(dirname "$5")" && pwd)/$(basename "$5")
 . "$here/expect.sh"
 
 # files FOLDER: its entries, hidden ones as well.
@@ -143,6 +144,16 @@ expect_untouched 'tapemark-make: nowhere.json: cannot be opened: No such file or
 expect_untouched 'tapemark-make: made: is a directory' made -o made
 expect_untouched 'tapemark-make: --line: a line of 0.2914 m is shorter than a CM' --line 29.14cm -o made
 expect_untouched 'tapemark-make: two?lines.json: cannot be opened' "$(printf 'two\nlines.json')" -o made
+
+# What the page about plans shows. in_readme MARK: the block behind this mark.
+in_readme() {
+    sed -n "/^<!-- tested: $1 -->\$/,/^\`\`\`\$/p" "$readme" | sed '1,2d;$d'
+}
+in_readme plan >shown.json
+run 0 shown.json -o shown
+in_readme summary >summary
+[ "$(lines summary)" -eq 2 ] && head -n 2 out | cmp -s summary - || fail 'the page about plans shows another summary'
+rm -r shown shown.json summary
 
 # ---- Places that cannot be written ----------------------------------------------------------------------------
 
