@@ -114,6 +114,23 @@ static void sheets_are_read_completely(void **state)
     hand_tape_release(&tape);
 }
 
+/* The widest margins, and lengths stretched: still nothing in the margins, and all is there. */
+static void narrow_pages_keep_their_margins(void **state)
+{
+    static readings read;
+    (void)state;
+    hand_tape tape = hand_tape_of_tms(0.8, 0, codes, 3, true);
+    const print_settings settings = {.paper = PRINT_LETTER, .margin_mm = 25, .scale_x = 1.1, .scale_y = 1.1};
+    print_summary summary;
+    raster_pages pages = print_and_rasterise(&tape, &settings, 300, &summary);
+    assert_int_equal(pages.count, 1);
+    assert_white_margins(&pages.items[0], 25);
+    read_markers(&pages.items[0], &read);
+    assert_reads_all(&tape, &read);
+    raster_pages_release(&pages);
+    hand_tape_release(&tape);
+}
+
 /* Two rows a page of the paper's tape height, and no more pieces than the longest one allows. */
 static void tiles_are_as_few_as_can_be(void **state)
 {
@@ -308,7 +325,7 @@ static void pages_tell_what_is_on_them(void **state)
     char *text = read_text(text_path, &size);
     static const char *const wanted[] = {
         "17", "\u221218", "19", "\u22121505582", "TM 101", "L1", "L2", "L1 \u00b7 1|2", "0.5 m", "Print at 100 %",
-        "100 mm", "the ink is 56.00 mm high", "Page 1 of 3", "Page 3 of 3", "A4", "glue"};
+        "100 mm", "the ink is 56.00 mm high", "this way up", "Page 1 of 3", "Page 3 of 3", "A4", "glue"};
     for (size_t i = 0; i < COUNT_OF(wanted); i++)
         assert_text_has(text, wanted[i]);
     free(text);
@@ -382,6 +399,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sheets_are_read_completely),
+        cmocka_unit_test(narrow_pages_keep_their_margins),
         cmocka_unit_test(tiles_are_as_few_as_can_be),
         cmocka_unit_test(a_module_too_large_names_the_largest),
         cmocka_unit_test(two_metres_of_roll),

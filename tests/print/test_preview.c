@@ -163,8 +163,8 @@ static void rooms_of_every_shape_are_drawn(void **state)
         for (size_t line = 0; line < tape.wanted.line_count; line++)
             tape.wanted.lines[line] = (plan_line){{0, 0}, {shapes[i][0], shapes[i][1]}, PLAN_ON_WALL, 0};
         raster picture = preview_of(&tape);
-        assert_in_range(picture.width_px, 200, 4000);
-        assert_in_range(picture.height_px, 200, 4000);
+        assert_in_range(picture.width_px, 150, 4000);
+        assert_in_range(picture.height_px, 150, 4000);
         raster_release(&picture);
         hand_tape_release(&tape);
     }

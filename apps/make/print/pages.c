@@ -79,7 +79,7 @@ static bool place_pieces(print_job *job, error_text *error)
 
 #define RULER_MM 100
 #define FOOTER_TEXT_MM (RULER_MM + 9.0)
-#define FOOTER_WIDTH_MM 230.0
+#define FOOTER_WIDTH_MM 240.0
 
 static void draw_ruler(drawing *page, double baseline_mm)
 {
@@ -98,22 +98,32 @@ static void draw_ruler(drawing *page, double baseline_mm)
     drawing_text(page, "100 mm", (drawing_point){RULER_MM, baseline_mm + 2.4}, &font);
 }
 
+/* A line of text with another one at the right edge, smaller where both would not fit. */
+static void draw_footer_line(drawing *page, const char *text, const char *right_text, double right_mm,
+                             double baseline_mm, drawing_font font)
+{
+    const double between_mm = 4;
+    double wanted_mm = drawing_text_width_mm(page, text, &font) + drawing_text_width_mm(page, right_text, &font);
+    double room_mm = right_mm - FOOTER_TEXT_MM - between_mm;
+    font.size_mm *= wanted_mm > room_mm ? room_mm / wanted_mm : 1;
+    drawing_text(page, text, (drawing_point){FOOTER_TEXT_MM, baseline_mm}, &font);
+    font.anchor = DRAWING_RIGHT;
+    drawing_text(page, right_text, (drawing_point){right_mm, baseline_mm}, &font);
+}
+
 static void draw_footer(drawing *page, const print_job *job, size_t page_index, double width_mm, double bottom_mm)
 {
-    const drawing_font bold = {2.8, true, DRAWING_LEFT, 0}, small = {2.4, false, DRAWING_LEFT, 0};
-    const drawing_font right = {2.8, true, DRAWING_RIGHT, 0}, small_right = {2.4, false, DRAWING_RIGHT, 0};
     double right_mm = width_mm < 2 * FOOTER_WIDTH_MM ? width_mm : FOOTER_WIDTH_MM;
-    double first_mm = bottom_mm - 4.0, second_mm = bottom_mm - 0.6;
-    char text[120];
+    char text[120], number[60];
     drawing_set_colour(page, (drawing_colour){0.15, 0.15, 0.15, 1});
     draw_ruler(page, bottom_mm - 3.0);
-    drawing_text(page, "Print at 100 %, do not fit to page.", (drawing_point){FOOTER_TEXT_MM, first_mm}, &bold);
-    snprintf(text, sizeof text, "Then the ruler measures 100 mm, and the ink is %.2f mm high.",
+    snprintf(number, sizeof number, "Page %zu of %zu", page_index + 1, job->page_count);
+    draw_footer_line(page, "Print at 100 %, do not fit to page.", number, right_mm, bottom_mm - 4.0,
+                     (drawing_font){2.8, true, DRAWING_LEFT, 0});
+    snprintf(text, sizeof text, "Then the ruler measures 100 mm, and the ink is %.2f mm high. Arrows: this way up.",
              TAPEMARK_HEIGHT_MODULES * job->wanted->module_mm);
-    drawing_text(page, text, (drawing_point){FOOTER_TEXT_MM, second_mm}, &small);
-    snprintf(text, sizeof text, "Page %zu of %zu", page_index + 1, job->page_count);
-    drawing_text(page, text, (drawing_point){right_mm, first_mm}, &right);
-    drawing_text(page, job->roll ? "Tapemark" : job->room.name, (drawing_point){right_mm, second_mm}, &small_right);
+    draw_footer_line(page, text, job->roll ? "Tapemark" : job->room.name, right_mm, bottom_mm - 0.6,
+                     (drawing_font){2.4, false, DRAWING_LEFT, 0});
 }
 
 /* A roll's page is as wide as what is on it. */

@@ -19,7 +19,7 @@ static const paper_kind kinds[] = {
 
 #define SCALE_MIN 0.9
 #define SCALE_MAX 1.1
-#define MARGIN_MAX_MM 50.0
+#define MARGIN_MAX_MM 25.0
 
 bool print_paper_parse(const char *text, print_paper *paper)
 {

@@ -14,7 +14,7 @@ static const drawing_colour flap_gray = {0.7, 0.7, 0.7, 1};
 #define MARK_WIDTH_MM 0.15
 #define CROSS_ARM_MM 1.8
 #define SMALL_TEXT_MM 2.5
-#define BASELINE_MM 1.6  /* above the lower edge of a band */
+#define BASELINE_MM 1.6  /* of the lower band, above its lower edge */
 
 /* A piece at its place on the page. */
 typedef struct placed_piece {
@@ -108,6 +108,12 @@ typedef struct id_style {
 #define ID_SIZE_MM 3.4
 #define ID_SIZE_MIN_MM 1.4
 #define ARROW_WIDTH 0.72  /* in sizes of the font, with the space behind it */
+#define ARROW_HALF 0.24   /* of its head alone */
+
+static double upper_baseline_mm(const placed_piece *placed)
+{
+    return placed->at.y_mm - 1.0;
+}
 
 static void format_id(int32_t id, char *text, size_t size)
 {
@@ -137,7 +143,7 @@ static id_style choose_id_style(const placed_piece *placed)
 
 static void draw_arrow_up(drawing *page, drawing_point base, double size_mm)
 {
-    double half = 0.24 * size_mm, stem = 0.08 * size_mm, height = 0.73 * size_mm, neck = 0.36 * size_mm;
+    double half = ARROW_HALF * size_mm, stem = 0.08 * size_mm, height = 0.73 * size_mm, neck = 0.36 * size_mm;
     const drawing_point corners[] = {
         {base.x_mm + half, base.y_mm - height},      {base.x_mm + 2 * half, base.y_mm - neck},
         {base.x_mm + half + stem, base.y_mm - neck}, {base.x_mm + half + stem, base.y_mm},
@@ -148,7 +154,7 @@ static void draw_arrow_up(drawing *page, drawing_point base, double size_mm)
 }
 
 /* An arrow and the id, together in the middle above the coding region, unless they would leave the piece. */
-static void draw_id(const placed_piece *placed, int32_t id, double middle_mm, double size_mm)
+static bool draw_id(const placed_piece *placed, int32_t id, double middle_mm, double size_mm)
 {
     char text[24];
     const drawing_font font = {size_mm, true, DRAWING_LEFT, 0};
@@ -156,24 +162,42 @@ static void draw_id(const placed_piece *placed, int32_t id, double middle_mm, do
     double left_limit_mm = placed->at.x_mm + (placed->piece->joint_before ? CROSS_ARM_MM : 0);
     double right_limit_mm = placed->right_mm - (placed->piece->joint_after ? CROSS_ARM_MM : 0);
     if (left_mm < left_limit_mm || left_mm + width_mm > right_limit_mm)
-        return;
-    drawing_point base = {left_mm, placed->at.y_mm - BASELINE_MM + 0.6};
+        return false;
+    drawing_point base = {left_mm, upper_baseline_mm(placed)};
     format_id(id, text, sizeof text);
     draw_arrow_up(placed->page, base, size_mm);
     drawing_text(placed->page, text, (drawing_point){left_mm + ARROW_WIDTH * size_mm, base.y_mm}, &font);
+    return true;
 }
 
-static void draw_ids_of_segment(const placed_piece *placed, const layout_segment *segment, const id_style *style)
+/* How many there was room for. */
+static size_t draw_ids_of_segment(const placed_piece *placed, const layout_segment *segment, const id_style *style)
 {
     const tape_piece *piece = placed->piece;
+    size_t drawn = 0;
     for (size_t slot = 0; slot < segment->cm_count; slot++) {
         size_t cm = segment->first_cm + slot;
         int64_t middle_halves = 2 * (int64_t)layout_cm_start_modules(segment, slot) + TAPEMARK_CM_WIDTH_MODULES;
         bool on_piece = cm >= piece->stretch->cm_begin && cm < piece->stretch->cm_end &&
                         middle_halves > piece->start_halves && middle_halves < piece->end_halves;
-        if (on_piece && (cm - piece->stretch->cm_begin) % style->step == 0)
-            draw_id(placed, placed->layout->ids[cm], x_of_halves(placed, middle_halves), style->size_mm);
+        if (on_piece && (cm - piece->stretch->cm_begin) % style->step == 0 &&
+            draw_id(placed, placed->layout->ids[cm], x_of_halves(placed, middle_halves), style->size_mm))
+            drawn++;
     }
+    return drawn;
+}
+
+/* Pieces without an id, of a finder pattern and bars, have a way up, too. */
+static void draw_ids(const placed_piece *placed)
+{
+    const tape_piece *piece = placed->piece;
+    const id_style style = choose_id_style(placed);
+    size_t drawn = 0;
+    for (size_t i = piece->segment_begin; i < piece->segment_end; i++)
+        drawn += draw_ids_of_segment(placed, &placed->layout->segments[i], &style);
+    double left_mm = (placed->at.x_mm + placed->right_mm) / 2 - ARROW_HALF * style.size_mm;
+    if (drawn == 0)
+        draw_arrow_up(placed->page, (drawing_point){left_mm, upper_baseline_mm(placed)}, style.size_mm);
 }
 
 /* ---- Lower band: line, joints, codes, metre marks ------------------------------------------------------ */
@@ -281,12 +305,11 @@ void piece_draw_labels(drawing *page, const plan *wanted, const tape_layout *lay
                        drawing_point at)
 {
     const placed_piece placed = place(page, wanted, layout, piece, at);
-    const id_style style = choose_id_style(&placed);
     drawing_set_colour(page, label_gray);
+    draw_ids(&placed);
     free_band band = draw_end_labels(&placed);
     draw_metre_marks(&placed, &band);
     for (size_t i = piece->segment_begin; i < piece->segment_end; i++) {
-        draw_ids_of_segment(&placed, &layout->segments[i], &style);
         if (layout->segments[i].bars)
             draw_code(&placed, &layout->segments[i], &band);
     }

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define PX_PER_MM 8.0
+#define PX_PER_MM 5.0
 #define MARGIN_MM 11.0
 #define FOOTER_MM 9.0
 #define BAND_MIN_MM 1.0  /* the tape is drawn no thinner, so that it is seen in the largest room */

@@ -22,9 +22,9 @@ typedef struct print_id_range {
 /* Zeroed settings, with a dpi where pictures are wanted, are good ones. */
 typedef struct print_settings {
     print_paper paper;           /* sheets lie on their longer side */
-    double margin_mm;            /* that stays white on each side of a page; 0: 10 on sheets, 3 on a roll */
+    double margin_mm;            /* that stays white on each side of a page, up to 25; 0: 10 on sheets, 3 on a roll */
     double scale_x, scale_y;     /* what lengths along and across the tape are multiplied by, for printers that
-                                    stretch; 0: 1 */
+                                    stretch, 0.9 to 1.1; 0: 1 */
     const print_id_range *only;  /* print just these CMs, as pieces to mend a tape with; NULL: all of it */
     size_t only_count;
     double dpi;                  /* of pictures */
