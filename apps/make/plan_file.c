@@ -1,6 +1,7 @@
 /* plan.schema.json beside this file says what a plan may hold: the same keys, limits and messages' paths as here. */
 #include "json_file.h"
 #include "plan.h"
+#include "plan_values.h"
 #include "tapemark.h"
 
 #include <math.h>
@@ -24,12 +25,6 @@ static const char *const plan_keys[] = {
     "background", "on", "above_floor_m", "lines", NULL};
 static const char *const line_keys[] = {"from_m", "to_m", "on", "above_floor_m", NULL};
 
-typedef struct number_rule {
-    const char *key;
-    const char *unit;  /* " m", " mm", or nothing for whole numbers */
-    double least, most;
-} number_rule;
-
 static const number_rule room_rule = {"room_m", " m", PLAN_SIDE_MIN_M, PLAN_SIDE_MAX_M};
 static const number_rule height_rule = {"tape_height_mm", " mm", HEIGHT_MIN_MM, HEIGHT_MAX_MM};
 static const number_rule module_rule = {"module_mm", " mm", PLAN_MODULE_MIN_MM, PLAN_MODULE_MAX_MM};
@@ -43,180 +38,9 @@ typedef struct line_defaults {
     double above_floor_m;
 } line_defaults;
 
-/* A path such as "lines[3].to_m[1]", put together as the reader goes down. */
-typedef struct json_path {
-    char text[80];
-} json_path;
-
-static json_path member_of(const json_path *parent, const char *key)
-{
-    json_path path;
-    const char *dot = parent->text[0] == '\0' ? "" : ".";
-    snprintf(path.text, sizeof path.text, "%.40s%s%.30s", parent->text, dot, key);
-    return path;
-}
-
-static json_path element_of(const json_path *parent, int index)
-{
-    json_path path;
-    snprintf(path.text, sizeof path.text, "%.60s[%d]", parent->text, index);
-    return path;
-}
-
-/* ---- Keys ---------------------------------------------------------------------------------------------------- */
-
-enum { KEY_MAX = 40 };
-
-static size_t smallest(size_t a, size_t b, size_t c)
-{
-    size_t least = a < b ? a : b;
-    return least < c ? least : c;
-}
-
-/* Letters to add, drop or change until one word is the other. */
-static size_t edit_distance(const char *a, const char *b)
-{
-    size_t row[KEY_MAX + 1], length = strlen(b);
-    for (size_t j = 0; j <= length; j++)
-        row[j] = j;
-    for (size_t i = 0; a[i] != '\0'; i++) {
-        size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (size_t j = 0; j < length; j++) {
-            size_t changed = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = smallest(row[j] + 1, row[j + 1] + 1, changed);
-        }
-    }
-    return row[length];
-}
-
-/* NULL when none is near. */
-static const char *nearest_key(const char *wrong, const char *const *known)
-{
-    const char *nearest = NULL;
-    size_t least = 4;
-    for (; *known != NULL; known++) {
-        size_t distance = strlen(wrong) <= KEY_MAX ? edit_distance(wrong, *known) : KEY_MAX;
-        if (strstr(*known, wrong) != NULL && strlen(wrong) >= 4 && least > 3)
-            distance = 3;
-        if (distance < least) {
-            least = distance;
-            nearest = *known;
-        }
-    }
-    return nearest;
-}
-
-static const char *unit_of_key(const char *key)
-{
-    size_t length = strlen(key);
-    if (length > 3 && strcmp(key + length - 3, "_mm") == 0)
-        return ", in millimetres";
-    return length > 2 && strcmp(key + length - 2, "_m") == 0 ? ", in metres" : "";
-}
-
-static void refuse_key(const json_path *place, const char *wrong, const char *const *known, error_text *error)
-{
-    json_path path = member_of(place, wrong);
-    const char *nearest = nearest_key(wrong, known);
-    if (nearest != NULL) {
-        error_text_set(error, "%s: there is no such key; did you mean \"%s\"%s?", path.text, nearest,
-                       unit_of_key(nearest));
-        return;
-    }
-    char all[240] = "";
-    for (size_t length = 0; *known != NULL && length < sizeof all; known++)
-        length += (size_t)snprintf(all + length, sizeof all - length, " %s", *known);
-    error_text_set(error, "%s: there is no such key; expected%s", path.text, all);
-}
-
-static bool check_object(const cJSON *object, const json_path *place, const char *const *known, error_text *error)
-{
-    error_text reason;
-    for (const cJSON *item = cJSON_IsObject(object) ? object->child : NULL; item != NULL; item = item->next) {
-        const char *const *key = known;
-        while (*key != NULL && strcmp(*key, item->string) != 0)
-            key++;
-        if (*key == NULL) {
-            refuse_key(place, item->string, known, error);
-            return false;
-        }
-    }
-    if (json_check_keys(object, known, false, &reason))
-        return true;
-    error_text_set(error, "%s: %s", place->text[0] == '\0' ? "the plan" : place->text, reason.text);
-    return false;
-}
-
 static const cJSON *member(const cJSON *object, const char *key)
 {
     return cJSON_GetObjectItemCaseSensitive(object, key);
-}
-
-static bool refuse_missing(const json_path *place, const char *key, const char *what, error_text *error)
-{
-    json_path path = member_of(place, key);
-    error_text_set(error, "%s: is missing: %s", path.text, what);
-    return false;
-}
-
-/* ---- Numbers ------------------------------------------------------------------------------------------------- */
-
-static bool within(double value, const number_rule *rule)
-{
-    return value >= rule->least && value <= rule->most;
-}
-
-/* Which unit was probably meant by a number that is out of range. */
-static void add_hint(double value, const number_rule *rule, char *hint, size_t size)
-{
-    bool metres = strcmp(rule->unit, " m") == 0;
-    double other = metres ? value / 1000 : value * 1000;
-    hint[0] = '\0';
-    if (rule->unit[0] != '\0' && other > 0 && within(other, rule))
-        snprintf(hint, size, " (%s? that would be %.6g%s)", metres ? "millimetres" : "metres", other, rule->unit);
-}
-
-static bool read_number(const cJSON *item, const json_path *path, const number_rule *rule, double *value,
-                        error_text *error)
-{
-    bool whole = rule->unit[0] == '\0';
-    if (!cJSON_IsNumber(item)) {
-        error_text_set(error, "%s: expected a %s%s%s, without quotes", path->text, whole ? "whole number" : "number",
-                       whole ? "" : " in", rule->unit);
-        return false;
-    }
-    *value = item->valuedouble;
-    if (!within(*value, rule)) {
-        char hint[80];
-        add_hint(*value, rule, hint, sizeof hint);
-        error_text_set(error, "%s: %.10g%s is out of range, %.10g to %.10g%s", path->text, *value, rule->unit,
-                       rule->least, rule->most, hint);
-        return false;
-    }
-    if (whole && *value != floor(*value)) {
-        error_text_set(error, "%s: %.10g is no whole number", path->text, *value);
-        return false;
-    }
-    return true;
-}
-
-/* Leaves the value alone when there is no such key. */
-static bool read_optional(const cJSON *object, const json_path *place, const number_rule *rule, double *value,
-                          error_text *error)
-{
-    const cJSON *item = member(object, rule->key);
-    json_path path = member_of(place, rule->key);
-    return item == NULL || read_number(item, &path, rule, value, error);
-}
-
-static bool check_pair(const cJSON *item, const json_path *path, const char *what, error_text *error)
-{
-    if (cJSON_IsArray(item) && cJSON_GetArraySize(item) == 2)
-        return true;
-    error_text_set(error, "%s: expected two numbers, [%s], in metres", path->text, what);
-    return false;
 }
 
 /* ---- Lines --------------------------------------------------------------------------------------------------- */
@@ -224,26 +48,26 @@ static bool check_pair(const cJSON *item, const json_path *path, const char *wha
 static bool read_coordinate(const cJSON *item, const json_path *path, double most, double *value, error_text *error)
 {
     number_rule rule = {"", " m", 0, most + ROOM_GRACE_M};
-    if (cJSON_IsNumber(item) && !within(item->valuedouble, &rule)) {
+    if (cJSON_IsNumber(item) && !plan_within(item->valuedouble, &rule)) {
         char hint[80];
-        add_hint(item->valuedouble, &rule, hint, sizeof hint);
+        plan_unit_hint(item->valuedouble, &rule, hint, sizeof hint);
         error_text_set(error, "%s: %.10g m is outside of the room, 0 to %.10g%s", path->text, item->valuedouble, most,
                        hint);
         return false;
     }
-    return read_number(item, path, &rule, value, error);
+    return plan_read_number(item, path, &rule, value, error);
 }
 
 static bool read_point(const cJSON *line, const json_path *place, const char *key, const plan *room,
                        plan_point *point, error_text *error)
 {
     const cJSON *item = member(line, key);
-    json_path path = member_of(place, key);
+    json_path path = path_of_member(place, key);
     if (item == NULL)
-        return refuse_missing(place, key, "a point of the plan, [x, y] in metres", error);
-    if (!check_pair(item, &path, "x, y", error))
+        return plan_refuse_missing(place, key, "a point of the plan, [x, y] in metres", error);
+    if (!plan_check_pair(item, &path, "x, y", error))
         return false;
-    json_path x = element_of(&path, 0), y = element_of(&path, 1);
+    json_path x = path_of_element(&path, 0), y = path_of_element(&path, 1);
     return read_coordinate(item->child, &x, room->width_m, &point->x_m, error) &&
            read_coordinate(item->child->next, &y, room->height_m, &point->y_m, error);
 }
@@ -252,7 +76,7 @@ static bool read_mount(const cJSON *object, const json_path *place, plan_mount *
 {
     const cJSON *item = member(object, "on");
     const char *text = cJSON_GetStringValue(item);
-    json_path path = member_of(place, "on");
+    json_path path = path_of_member(place, "on");
     if (item == NULL)
         return true;
     if (text != NULL && (strcmp(text, "wall") == 0 || strcmp(text, "floor") == 0)) {
@@ -280,13 +104,13 @@ static bool read_line(const cJSON *item, const json_path *place, const line_defa
                       plan_line *line, error_text *error)
 {
     *line = (plan_line){.mount = defaults->mount};
-    if (!check_object(item, place, line_keys, error) ||
+    if (!plan_check_keys(item, place, line_keys, error) ||
         !read_point(item, place, "from_m", wanted, &line->from, error) ||
         !read_point(item, place, "to_m", wanted, &line->to, error) ||
         !read_mount(item, place, &line->mount, error))
         return false;
     line->above_floor_m = line->mount == PLAN_ON_WALL ? defaults->above_floor_m : 0;
-    if (!read_optional(item, place, &above_floor_rule, &line->above_floor_m, error))
+    if (!plan_read_optional(item, place, &above_floor_rule, &line->above_floor_m, error))
         return false;
     if (line->mount == PLAN_ON_FLOOR && line->above_floor_m != 0) {
         error_text_set(error, "%s.above_floor_m: must be 0 or left out for a tape on the floor", place->text);
@@ -300,9 +124,9 @@ static bool read_lines(const cJSON *root, const json_path *top, const line_defau
 {
     const cJSON *items = member(root, "lines");
     int count = cJSON_GetArraySize(items);
-    json_path place = member_of(top, "lines");
+    json_path place = path_of_member(top, "lines");
     if (items == NULL)
-        return refuse_missing(top, "lines", "the lines along which the tape goes, in the order of drawing", error);
+        return plan_refuse_missing(top, "lines", "where the tape goes, in the order of drawing", error);
     if (!cJSON_IsArray(items) || count < 1 || count > PLAN_LINES_MAX) {
         error_text_set(error, "lines: expected an array of 1 to %d lines", PLAN_LINES_MAX);
         return false;
@@ -314,7 +138,7 @@ static bool read_lines(const cJSON *root, const json_path *top, const line_defau
     }
     const cJSON *item;
     cJSON_ArrayForEach(item, items) {
-        json_path path = element_of(&place, (int)wanted->line_count);
+        json_path path = path_of_element(&place, (int)wanted->line_count);
         if (!read_line(item, &path, defaults, wanted, &wanted->lines[wanted->line_count++], error))
             return false;
     }
@@ -326,22 +150,23 @@ static bool read_lines(const cJSON *root, const json_path *top, const line_defau
 static bool read_room(const cJSON *root, const json_path *top, plan *wanted, error_text *error)
 {
     const cJSON *item = member(root, "room_m");
-    json_path path = member_of(top, "room_m"), width = element_of(&path, 0), height = element_of(&path, 1);
+    json_path path = path_of_member(top, "room_m");
+    json_path width = path_of_element(&path, 0), height = path_of_element(&path, 1);
     if (item == NULL)
-        return refuse_missing(top, "room_m", "the size of the room, [width, height] in metres", error);
-    return check_pair(item, &path, "width, height", error) &&
-           read_number(item->child, &width, &room_rule, &wanted->width_m, error) &&
-           read_number(item->child->next, &height, &room_rule, &wanted->height_m, error);
+        return plan_refuse_missing(top, "room_m", "the size of the room, [width, height] in metres", error);
+    return plan_check_pair(item, &path, "width, height", error) &&
+           plan_read_number(item->child, &width, &room_rule, &wanted->width_m, error) &&
+           plan_read_number(item->child->next, &height, &room_rule, &wanted->height_m, error);
 }
 
 static bool read_module(const cJSON *root, const json_path *top, plan *wanted, error_text *error)
 {
     double height_mm = 0;
-    if (!read_optional(root, top, &height_rule, &height_mm, error) ||
-        !read_optional(root, top, &module_rule, &wanted->module_mm, error))
+    if (!plan_read_optional(root, top, &height_rule, &height_mm, error) ||
+        !plan_read_optional(root, top, &module_rule, &wanted->module_mm, error))
         return false;
     if (height_mm == 0 && wanted->module_mm == 0)
-        return refuse_missing(top, "tape_height_mm", "how tall the ink of the tape is, 60 for instance (or "
+        return plan_refuse_missing(top, "tape_height_mm", "how tall the ink of the tape is, 60 for instance (or "
                               "module_mm, a seventh of it)", error);
     double height_module_mm = height_mm / TAPEMARK_HEIGHT_MODULES;
     if (wanted->module_mm == 0)
@@ -356,11 +181,11 @@ static bool read_module(const cJSON *root, const json_path *top, plan *wanted, e
 static bool read_ids(const cJSON *root, const json_path *top, plan *wanted, error_text *error)
 {
     double first_id = 0, cms = PLAN_TM_CMS, most = TAPEMARK_TM_MAX_CMS;
-    if (!read_optional(root, top, &first_id_rule, &first_id, error) ||
-        !read_optional(root, top, &tm_cms_rule, &cms, error))
+    if (!plan_read_optional(root, top, &first_id_rule, &first_id, error) ||
+        !plan_read_optional(root, top, &tm_cms_rule, &cms, error))
         return false;
     number_rule most_rule = {"tm_cms_max", "", cms, TAPEMARK_TM_MAX_CMS};
-    if (!read_optional(root, top, &most_rule, &most, error))
+    if (!plan_read_optional(root, top, &most_rule, &most, error))
         return false;
     wanted->first_id = (int32_t)first_id;
     wanted->tm_cms = (unsigned)cms;
@@ -415,11 +240,11 @@ static bool read_root(const cJSON *root, const char *path, plan *wanted, error_t
 {
     json_path top = {""};
     line_defaults defaults = {PLAN_ON_WALL, 0};
-    return check_object(root, &top, plan_keys, error) && read_schema_name(root, error) &&
+    return plan_check_keys(root, &top, plan_keys, error) && read_schema_name(root, error) &&
            read_room(root, &top, wanted, error) && read_module(root, &top, wanted, error) &&
            read_ids(root, &top, wanted, error) && read_upright(root, wanted, error) &&
            read_background(root, path, wanted, error) && read_mount(root, &top, &defaults.mount, error) &&
-           read_optional(root, &top, &above_floor_rule, &defaults.above_floor_m, error) &&
+           plan_read_optional(root, &top, &above_floor_rule, &defaults.above_floor_m, error) &&
            read_lines(root, &top, &defaults, wanted, error);
 }
 

@@ -139,7 +139,7 @@ echo 'no picture' >floor.png
 expect_untouched 'floor.png: is no picture' plan.json -o made
 rm floor.png
 printf '{"room_m":[3.7,' >plan.json
-expect_untouched 'tapemark-make: plan.json: is not valid JSON: it ends too early at line 1, column 16' plan.json -o made
+expect_untouched 'plan.json: is not valid JSON: it ends too early at line 1, column 16' plan.json -o made
 expect_untouched 'tapemark-make: nowhere.json: cannot be opened: No such file or directory' nowhere.json -o made
 expect_untouched 'tapemark-make: made: is a directory' made -o made
 expect_untouched 'tapemark-make: --line: a line of 0.2914 m is shorter than a CM' --line 29.14cm -o made
