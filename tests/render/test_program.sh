@@ -1,9 +1,10 @@
 # tapemark-render as a whole: what it refuses, what it leaves behind, and that it does the same again.
-# usage: test_program.sh FOLDER-OF-expect.sh tapemark-render tapemark-decode VERSION
+# usage: test_program.sh FOLDER-OF-expect.sh tapemark-render tapemark-decode VERSION SOURCE-FOLDER
 set -eu
 program=$2
 decode=$3
 version=$4
+source=$5
 . "$1/expect.sh"
 
 # nothing_left: neither the output nor a part of it.
@@ -30,7 +31,7 @@ at_map='--map given/map.json --camera 1.5,2,1,-90,-20'
 run 0 --help
 expect out 'usage: tapemark-render'
 [ "$(wc -L <out)" -le 118 ] || fail 'the help is too wide'
-for option in $(grep -o '^    \(TAKEN\|NUMBER\)("[a-z-]*"' "$5" | sed 's/.*"\(.*\)"/\1/'); do
+for option in $(grep -o '^    \(TAKEN\|NUMBER\)("[a-z-]*"' "$source/render_options.c" | sed 's/.*"\(.*\)"/\1/'); do
     expect out "--$option"
 done
 run 0 --version
@@ -103,6 +104,25 @@ expect way.jsonl '"frame": 5, "time_s": 1.0000'
 run 0 --map given/map.json --path given/way.csv --fps 5 --frames 2 --size 64x48 --truth way.jsonl -o way.y4m
 expect_lines way.jsonl 2
 rm way.* line
+
+# What the README shows.
+block() {
+    sed -n "/<!-- tested: $1 -->/,/^\`\`\`\$/p" "$source/README.md" | sed -e '/^<!--/d' -e '/^```/d'
+}
+mkdir readme
+cp given/map.json readme/map.json
+block path >readme/walk.csv
+block commands >readme/commands
+expect_lines readme/commands 5
+run 0 --size 70x70 --background grid-codes -o readme/aruco.png
+while read -r name words; do
+    [ "$name" = tapemark-render ] || fail "README: $name"
+    # shellcheck disable=SC2086
+    (cd readme && "$program" $words --size 160x120 >../out 2>../err) || fail "README: $words"
+done <readme/commands
+expect_lines readme/walk.jsonl 38
+[ "$(wc -c <readme/frames.raw)" -eq $((2 * 2 * 160 * 120)) ] || fail 'README: frames.raw'
+rm -r readme
 
 # Nothing in view is no error.
 run 0 --map given/map.json --camera 1.5,2,1,90 --size 64x48 --truth empty.jsonl -o empty.png

@@ -263,7 +263,9 @@ double processor_ms()
 
 void frames_take_little_time(void **)
 {
-#ifdef TAPEMARK_MEASURE_TIME
+    // Debugging builds are slower by any factor.
+    if (TAPEMARK_MEASURE_TIME == 0)
+        skip();
     constexpr int frames = 20, rounds = 3;
     write_text("rooms.json", two_rooms);
     double best_ms = 1e9;
@@ -274,9 +276,6 @@ void frames_take_little_time(void **)
     }
     print_message("640 x 480 px: %.1f ms a frame, PNG and start of the program included\n", best_ms);
     assert_true(best_ms < 100);
-#else
-    skip();
-#endif
 }
 
 template <CMUnitTestFunction test> void in_own_folder(void **state)
