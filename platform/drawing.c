@@ -1,11 +1,11 @@
 #include "drawing.h"
 #include "drawing_file.h"
+#include "drawing_png.h"
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
 
-#include <math.h>
 #include <stdlib.h>
 
 struct drawing {
@@ -18,7 +18,6 @@ struct drawing {
 };
 
 static const double PT_PER_MM = 72.0 / 25.4;
-static const double MM_PER_INCH = 25.4;
 
 /* fontconfig keeps what it has read of the fonts until the process ends, which leak checkers take for lost. They ask
  * programs for what is to be left out, and whether to tell, by these names. */
@@ -196,75 +195,7 @@ void drawing_discard(drawing *page)
     release(page);
 }
 
-/* ---- PNG ----------------------------------------------------------------------------------------------- */
-
-/* cairo's PNG knows no size on paper: a chunk with the pixels a metre is put in behind the header. */
-typedef struct png_file {
-    drawing_file file;
-    size_t offset_bytes;
-    uint8_t pixel_size[21];
-} png_file;
-
-enum { PNG_HEADER_BYTES = 33 };
-
-static uint32_t crc32_of(const uint8_t *bytes, size_t size)
-{
-    uint32_t crc = 0xffffffff;
-    for (size_t i = 0; i < size; i++) {
-        crc ^= bytes[i];
-        for (int bit = 0; bit < 8; bit++)
-            crc = crc >> 1 ^ (crc & 1 ? 0xedb88320 : 0);
-    }
-    return ~crc;
-}
-
-static void put_be32(uint8_t *target, uint32_t number)
-{
-    for (int i = 0; i < 4; i++)
-        target[i] = (uint8_t)(number >> (24 - 8 * i));
-}
-
-static void make_pixel_size_chunk(uint8_t chunk[21], double dpi)
-{
-    enum { DATA_BYTES = 9, UNIT_METRE = 1 };
-    static const uint8_t type[4] = {'p', 'H', 'Y', 's'};
-    uint32_t px_per_m = (uint32_t)lround(dpi / MM_PER_INCH * 1000);
-    put_be32(chunk, DATA_BYTES);
-    for (int i = 0; i < 4; i++)
-        chunk[4 + i] = type[i];
-    put_be32(chunk + 8, px_per_m);
-    put_be32(chunk + 12, px_per_m);
-    chunk[16] = UNIT_METRE;
-    put_be32(chunk + 17, crc32_of(chunk + 4, 4 + DATA_BYTES));
-}
-
-static cairo_status_t write_png_bytes(void *closure, const unsigned char *bytes, unsigned int size)
-{
-    png_file *png = closure;
-    size_t header_left = png->offset_bytes < PNG_HEADER_BYTES ? PNG_HEADER_BYTES - png->offset_bytes : 0;
-    size_t before = header_left < size ? header_left : size;
-    bool written = drawing_file_write(&png->file, bytes, before);
-    if (written && header_left > 0 && before == header_left)
-        written = drawing_file_write(&png->file, png->pixel_size, sizeof png->pixel_size);
-    if (written)
-        written = drawing_file_write(&png->file, bytes + before, size - before);
-    png->offset_bytes += size;
-    return written ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
-}
-
-static bool write_surface_png(cairo_surface_t *surface, const char *path, double dpi, error_text *error)
-{
-    png_file png = {0};
-    make_pixel_size_chunk(png.pixel_size, dpi);
-    if (!drawing_file_open(&png.file, path, error))
-        return false;
-    cairo_status_t status = cairo_surface_write_to_png_stream(surface, write_png_bytes, &png);
-    if (status == CAIRO_STATUS_SUCCESS || status == CAIRO_STATUS_WRITE_ERROR)
-        return drawing_file_publish(&png.file, error);
-    error_text_set(error, "%.300s: cannot be made: %s", path, cairo_status_to_string(status));
-    drawing_file_discard(&png.file);
-    return false;
-}
+/* ---- Pixels ----------------------------------------------------------------------------------------- */
 
 /* Pixels of one byte hold ink until they are shown; PNG and callers want light. */
 static void invert(uint8_t *target, const uint8_t *source, int32_t count)
@@ -300,7 +231,7 @@ bool drawing_write_gray_png(const uint8_t *pixels, int32_t width_px, int32_t hei
             for (size_t x = 0; x < (size_t)width_px; x++)
                 rows[y * stride + x] = pixels[y * (size_t)width_px + x];
         cairo_surface_mark_dirty(surface);
-        written = write_surface_png(surface, path, dpi, error);
+        written = drawing_png_write(surface, path, dpi, error);
     }
     cairo_surface_destroy(surface);
     return written;
@@ -308,7 +239,7 @@ bool drawing_write_gray_png(const uint8_t *pixels, int32_t width_px, int32_t hei
 
 bool drawing_write_png(drawing *page, const char *path, double dpi, error_text *error)
 {
-    return !has_failed(page, error) && write_surface_png(page->surface, path, dpi, error);
+    return !has_failed(page, error) && drawing_png_write(page->surface, path, dpi, error);
 }
 
 /* ---- Shapes -------------------------------------------------------------------------------------------- */
@@ -407,8 +338,8 @@ static void fill_rgb(cairo_surface_t *target, const uint8_t *pixels, int32_t wid
     cairo_surface_mark_dirty(target);
 }
 
-void drawing_picture(drawing *page, const uint8_t *pixels, int32_t width_px, int32_t height_px, ptrdiff_t stride_bytes,
-                     drawing_point from, drawing_point to, double opacity)
+void drawing_picture(drawing *page, const uint8_t *pixels, int32_t width_px, int32_t height_px,
+                     ptrdiff_t stride_bytes, drawing_point from, drawing_point to, double opacity)
 {
     cairo_surface_t *picture = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px);
     if (cairo_surface_status(picture) == CAIRO_STATUS_SUCCESS)

@@ -93,7 +93,7 @@ void drawing_text(drawing *page, const char *text, drawing_point at, const drawi
 double drawing_text_width_mm(drawing *page, const char *text, const drawing_font *font);
 
 /* A gray picture, as large as the rectangle between two corners. */
-void drawing_picture(drawing *page, const uint8_t *pixels, int32_t width_px, int32_t height_px, ptrdiff_t stride_bytes,
-                     drawing_point from, drawing_point to, double opacity);
+void drawing_picture(drawing *page, const uint8_t *pixels, int32_t width_px, int32_t height_px,
+                     ptrdiff_t stride_bytes, drawing_point from, drawing_point to, double opacity);
 
 #endif

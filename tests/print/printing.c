@@ -172,7 +172,8 @@ double raster_at(const raster *picture, double x_px, double y_px)
     int32_t x = (int32_t)floor(x_px), y = (int32_t)floor(y_px);
     double right = x_px - x, below = y_px - y;
     double above = pixel(picture, x, y) * (1 - right) + pixel(picture, x + 1, y) * right;
-    return above * (1 - below) + (pixel(picture, x, y + 1) * (1 - right) + pixel(picture, x + 1, y + 1) * right) * below;
+    double under = pixel(picture, x, y + 1) * (1 - right) + pixel(picture, x + 1, y + 1) * right;
+    return above * (1 - below) + under * below;
 }
 
 raster_pages rasterise(const char *pdf_path, int dpi)
@@ -198,6 +199,12 @@ void raster_pages_release(raster_pages *pages)
     for (size_t i = 0; i < pages->count; i++)
         raster_release(&pages->items[i]);
     free(pages->items);
+}
+
+void assert_text_has(const char *text, const char *wanted)
+{
+    if (strstr(text, wanted) == NULL)
+        fail_msg("\"%s\" is not in: %s", wanted, text);
 }
 
 void assert_near(double seen, double wanted, double tolerance)
@@ -283,7 +290,8 @@ static void assert_upright(const tapemark_point corners[4])
     assert_true(corners[3].y_px > corners[0].y_px && corners[2].y_px > corners[1].y_px);
 }
 
-void assert_reads_segment(const hand_tape *tape, size_t index, const readings *read, size_t *next_cm, size_t *next_tm)
+void assert_reads_segment(const hand_tape *tape, size_t index, const readings *read, size_t *next_cm,
+                          size_t *next_tm)
 {
     const layout_segment *segment = &tape->layout.segments[index];
     const int32_t *ids = tape->layout.ids + segment->first_cm;

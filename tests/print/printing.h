@@ -77,6 +77,8 @@ typedef struct raster_pages {
 raster_pages rasterise(const char *pdf_path, int dpi);
 void raster_pages_release(raster_pages *pages);
 
+void assert_text_has(const char *text, const char *wanted);
+
 /* Not more than `tolerance` away. */
 void assert_near(double seen, double wanted, double tolerance);
 
@@ -99,7 +101,8 @@ void read_markers_in_parts(const raster *picture, double begin_px, double part_p
 
 /* Segment `index` of the tape against what was read: its CMs from `*next_cm` on, its TM from `*next_tm` on, in the
  * right order, upright, and with the direction known. Both counts go on. */
-void assert_reads_segment(const hand_tape *tape, size_t index, const readings *read, size_t *next_cm, size_t *next_tm);
+void assert_reads_segment(const hand_tape *tape, size_t index, const readings *read, size_t *next_cm,
+                          size_t *next_tm);
 
 /* The same for all segments, and that nothing else was read. */
 void assert_reads_all(const hand_tape *tape, const readings *read);

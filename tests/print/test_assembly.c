@@ -1,5 +1,5 @@
-/* A tape in tiles on A4, put together again as people do it: by the crosses at its joints, which are looked for in the
- * rasterised pages, and not quite in line. */
+/* A tape in tiles on A4, put together again as people do it: by the crosses at its joints, which are looked for in
+ * the rasterised pages, and not quite in line. */
 #include "printing.h"
 
 #include <math.h>
@@ -154,7 +154,8 @@ static void glue(raster *tape, const tile *cut, const pose *at)
             double dx = x - at->x, dy = y - at->y;
             double page_x = at->page_x + at->cosine * dx + at->sine * dy;
             double page_y = at->page_y - at->sine * dx + at->cosine * dy;
-            if (page_x >= cut->left_px && page_x <= cut->right_px && page_y >= cut->top_px && page_y <= cut->bottom_px)
+            if (page_x >= cut->left_px && page_x <= cut->right_px && page_y >= cut->top_px &&
+                page_y <= cut->bottom_px)
                 tape->pixels[(size_t)y * (size_t)tape->width_px + (size_t)x] =
                     (uint8_t)lround(raster_at(cut->page, page_x, page_y));
         }
@@ -264,7 +265,8 @@ static void assembled_tape_has_its_length(void **state)
     const tapemark_point *first = read.tms[0].corners, *last = read.tms[1].corners;
     const layout_segment *segments = tape.layout.segments;
     double length_modules = segments[2].start_modules + 98.0 - segments[0].start_modules;
-    double length_px = hypot((double)last[1].x_px - (double)first[0].x_px, (double)last[1].y_px - (double)first[0].y_px);
+    double dx_px = (double)last[1].x_px - (double)first[0].x_px, dy_px = (double)last[1].y_px - (double)first[0].y_px;
+    double length_px = hypot(dx_px, dy_px);
     /* Each joint is found to some hundredths of a millimetre. */
     assert_near(length_px / assembled.px_per_mm, length_modules * MODULE_MM, 0.1 + 0.05 * (double)summary.joints);
     assert_modules(&assembled, tape.layout.ids + 6, 3, true, last);

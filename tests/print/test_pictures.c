@@ -13,12 +13,6 @@ static hand_tape tape_of_every_kind(double module_mm)
     return hand_tape_new(module_mm, every_kind, segments, COUNT_OF(segments));
 }
 
-static void assert_text_has(const char *text, const char *wanted)
-{
-    if (strstr(text, wanted) == NULL)
-        fail_msg("\"%s\" is not in: %s", wanted, text);
-}
-
 typedef bool (*printer)(const hand_tape *tape, const print_settings *settings, const char *folder,
                         print_summary *summary, error_text *error);
 
@@ -264,7 +258,8 @@ static void assert_svg(const char *text, const hand_tape *tape, size_t index, do
     const layout_segment *segment = &tape->layout.segments[index];
     double module_mm = tape->wanted.module_mm, width_mm, height_mm;
     int quiet = segment->bars ? 2 : 1;
-    int ink_width = (int)tapemark_segment_width_modules(segment->cm_count, segment->bars), width = ink_width + 2 * quiet;
+    int ink_width = (int)tapemark_segment_width_modules(segment->cm_count, segment->bars);
+    int width = ink_width + 2 * quiet;
     const char *size = strstr(text, "width=\"");
     assert_non_null(size);
     assert_int_equal(sscanf(size, "width=\"%lfmm\" height=\"%lfmm\"", &width_mm, &height_mm), 2);

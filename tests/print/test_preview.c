@@ -9,7 +9,8 @@
 static hand_tape small_room(void)
 {
     static const int32_t ids[] = {10, -11, 12, -13, 14};
-    static const hand_segment segments[] = {{0, 1, false}, {1, 1, false}, {2, 1, false}, {3, 1, false}, {4, 1, false}};
+    static const hand_segment segments[] = {
+        {0, 1, false}, {1, 1, false}, {2, 1, false}, {3, 1, false}, {4, 1, false}};
     static const plan_line lines[] = {{{0.1, 0}, {0.8, 0}, PLAN_ON_WALL, 0.1},
                                       {{1, 0.05}, {1, 0.7}, PLAN_ON_WALL, 0.1},
                                       {{0.9, 0.75}, {0.2, 0.75}, PLAN_ON_WALL, 0.1},

@@ -1,10 +1,7 @@
 #include "piece.h"
 
-#include "tapemark.h"
-
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 static const drawing_colour ink = {0, 0, 0, 1};
 static const drawing_colour label_gray = {0.25, 0.25, 0.25, 1};
@@ -115,16 +112,11 @@ static double upper_baseline_mm(const placed_piece *placed)
     return placed->at.y_mm - 1.0;
 }
 
-static void format_id(int32_t id, char *text, size_t size)
-{
-    snprintf(text, size, "%s%ld", id < 0 ? "\u2212" : "", labs((long)id));
-}
-
 static double id_width_mm(const placed_piece *placed, int32_t id, double size_mm)
 {
-    char text[24];
+    char text[STRIP_ID_BYTES];
     const drawing_font font = {size_mm, true, DRAWING_LEFT, 0};
-    format_id(id, text, sizeof text);
+    strip_format_id(id, text);
     return drawing_text_width_mm(placed->page, text, &font) + ARROW_WIDTH * size_mm;
 }
 
@@ -156,7 +148,7 @@ static void draw_arrow_up(drawing *page, drawing_point base, double size_mm)
 /* An arrow and the id, together in the middle above the coding region, unless they would leave the piece. */
 static bool draw_id(const placed_piece *placed, int32_t id, double middle_mm, double size_mm)
 {
-    char text[24];
+    char text[STRIP_ID_BYTES];
     const drawing_font font = {size_mm, true, DRAWING_LEFT, 0};
     double width_mm = id_width_mm(placed, id, size_mm), left_mm = middle_mm - width_mm / 2;
     double left_limit_mm = placed->at.x_mm + (placed->piece->joint_before ? CROSS_ARM_MM : 0);
@@ -164,7 +156,7 @@ static bool draw_id(const placed_piece *placed, int32_t id, double middle_mm, do
     if (left_mm < left_limit_mm || left_mm + width_mm > right_limit_mm)
         return false;
     drawing_point base = {left_mm, upper_baseline_mm(placed)};
-    format_id(id, text, sizeof text);
+    strip_format_id(id, text);
     draw_arrow_up(placed->page, base, size_mm);
     drawing_text(placed->page, text, (drawing_point){left_mm + ARROW_WIDTH * size_mm, base.y_mm}, &font);
     return true;
@@ -289,8 +281,7 @@ static double clear_of_metre_marks(const placed_piece *placed, double x_mm, doub
 static void draw_code(const placed_piece *placed, const layout_segment *segment, const free_band *band)
 {
     char text[TAPEMARK_TM_MAX_CMS + 4] = "TM ";
-    for (size_t slot = 0; slot < segment->cm_count && slot < TAPEMARK_TM_MAX_CMS; slot++)
-        text[3 + slot] = placed->layout->ids[segment->first_cm + slot] >= 0 ? '1' : '0';
+    strip_format_code(placed->layout, segment, text + 3);
     double left_mm = x_of_halves(placed, 2 * (int64_t)segment->start_modules);
     double right_mm = x_of_halves(placed, 2 * strip_ink_end_modules(segment));
     left_mm = left_mm > band->left_mm ? left_mm : band->left_mm;

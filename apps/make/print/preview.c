@@ -5,8 +5,6 @@
 #include "print.h"
 #include "strip.h"
 
-#include "tapemark.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -117,7 +115,8 @@ static void draw_room_border(const preview *view)
 
 static line_axis axis_of(const preview *view, const plan_line *line)
 {
-    drawing_point from = on_page(view, line->from.x_m, line->from.y_m), to = on_page(view, line->to.x_m, line->to.y_m);
+    drawing_point from = on_page(view, line->from.x_m, line->from.y_m);
+    drawing_point to = on_page(view, line->to.x_m, line->to.y_m);
     double length_mm = hypot(to.x_mm - from.x_mm, to.y_mm - from.y_mm);
     double divisor = length_mm > 0 ? length_mm : 1;
     return (line_axis){from, (to.x_mm - from.x_mm) / divisor, (to.y_mm - from.y_mm) / divisor, length_mm,
@@ -257,7 +256,7 @@ static void draw_bracket(preview *view, const layout_segment *segment)
     const axis_box band = segment_box(segment, line, &axis);
     const drawing_font font = {TEXT_MM, true, DRAWING_MIDDLE, 0};
     double v_mm = band.v_end_mm + BRACKET_GAP_MM;
-    char code[TAPEMARK_TM_MAX_CMS + 1] = "";
+    char code[TAPEMARK_TM_MAX_CMS + 1];
     const axis_box box = {band.u_begin_mm, band.u_end_mm, v_mm, v_mm + BRACKET_MM};
     if (!box_is_free(&view->taken, &axis, &box))
         return;
@@ -270,24 +269,18 @@ static void draw_bracket(preview *view, const layout_segment *segment)
     drawing_add_line(view->page, axis_point(&axis, band.u_end_mm, v_mm + BRACKET_MM),
                      axis_point(&axis, band.u_end_mm, v_mm));
     drawing_stroke(view->page, 0.25, 0);
-    for (size_t slot = 0; slot < segment->cm_count && slot < TAPEMARK_TM_MAX_CMS; slot++)
-        code[slot] = view->layout->ids[segment->first_cm + slot] >= 0 ? '1' : '0';
+    strip_format_code(view->layout, segment, code);
     label_along(view->page, &view->taken, &axis, code, (band.u_begin_mm + band.u_end_mm) / 2,
                 v_mm + BRACKET_MM + 0.6, &font);
-}
-
-static void format_id(int32_t id, char *text, size_t size)
-{
-    snprintf(text, size, "%s%ld", id < 0 ? "\u2212" : "", labs((long)id));
 }
 
 /* With the white around it. */
 static double widest_id_mm(const preview *view, const drawing_font *font)
 {
     const tape_layout *layout = view->layout;
-    char text[24];
+    char text[STRIP_ID_BYTES];
     int32_t last_id = layout->ids[layout->cm_count - 1];
-    format_id(last_id < 0 ? last_id : -last_id, text, sizeof text);
+    strip_format_id(last_id < 0 ? last_id : -last_id, text);
     return drawing_text_width_mm(view->page, text, font) + 0.5 * font->size_mm;
 }
 
@@ -298,14 +291,14 @@ static void draw_ids(preview *view, const layout_segment *segment)
     const line_axis axis = axis_of(view, line);
     const drawing_font font = {TEXT_MM, false, DRAWING_MIDDLE, 0};
     double v_mm = band_top_mm(line, &axis) + band_height_mm(&axis) + ID_GAP_MM;
-    char text[24];
+    char text[STRIP_ID_BYTES];
     double pitch_mm = TAPEMARK_CM_PITCH_MODULES * axis.module_mm;
     size_t step = (size_t)ceil(widest_id_mm(view, &font) / pitch_mm);
     drawing_set_colour(view->page, id_colour);
     for (size_t slot = 0; slot < segment->cm_count; slot += step) {
         int32_t id = view->layout->ids[segment->first_cm + slot];
         double middle_modules = layout_cm_start_modules(segment, slot) + TAPEMARK_CM_WIDTH_MODULES / 2.0;
-        format_id(id, text, sizeof text);
+        strip_format_id(id, text);
         label_along(view->page, &view->taken, &axis, text, middle_modules * axis.module_mm, v_mm, &font);
     }
 }
@@ -355,8 +348,10 @@ static void draw_scale_bar(const preview *view, double y_mm)
     snprintf(text, sizeof text, "%.4g m", bar_m);
     drawing_set_colour(view->page, wall_colour);
     drawing_add_line(view->page, (drawing_point){MARGIN_MM, y_mm}, (drawing_point){end_mm, y_mm});
-    drawing_add_line(view->page, (drawing_point){MARGIN_MM, y_mm - tick_mm}, (drawing_point){MARGIN_MM, y_mm + tick_mm});
-    drawing_add_line(view->page, (drawing_point){end_mm, y_mm - tick_mm}, (drawing_point){end_mm, y_mm + tick_mm});
+    for (int end = 0; end < 2; end++) {
+        double x_mm = end == 0 ? MARGIN_MM : end_mm;
+        drawing_add_line(view->page, (drawing_point){x_mm, y_mm - tick_mm}, (drawing_point){x_mm, y_mm + tick_mm});
+    }
     drawing_stroke(view->page, 0.25, 0);
     drawing_text(view->page, text, (drawing_point){end_mm + 1.2, y_mm + 0.36 * TEXT_MM}, &font);
 }

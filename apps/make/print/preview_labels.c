@@ -53,7 +53,8 @@ static drawing_point grid_point(const line_axis *axis, const axis_box *box, size
 
 void take_box(taken_area *taken, const line_axis *axis, const axis_box *box)
 {
-    size_t count_u = steps_along(box->u_begin_mm, box->u_end_mm), count_v = steps_along(box->v_begin_mm, box->v_end_mm);
+    size_t count_u = steps_along(box->u_begin_mm, box->u_end_mm);
+    size_t count_v = steps_along(box->v_begin_mm, box->v_end_mm);
     for (size_t i = 0; i <= count_u; i++) {
         for (size_t k = 0; k <= count_v; k++) {
             uint8_t *cell = cell_at(taken, grid_point(axis, box, i, count_u, k, count_v));
@@ -65,7 +66,8 @@ void take_box(taken_area *taken, const line_axis *axis, const axis_box *box)
 
 bool box_is_free(const taken_area *taken, const line_axis *axis, const axis_box *box)
 {
-    size_t count_u = steps_along(box->u_begin_mm, box->u_end_mm), count_v = steps_along(box->v_begin_mm, box->v_end_mm);
+    size_t count_u = steps_along(box->u_begin_mm, box->u_end_mm);
+    size_t count_v = steps_along(box->v_begin_mm, box->v_end_mm);
     for (size_t i = 0; i <= count_u; i++) {
         for (size_t k = 0; k <= count_v; k++) {
             const uint8_t *cell = cell_at(taken, grid_point(axis, box, i, count_u, k, count_v));

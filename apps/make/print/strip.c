@@ -1,12 +1,25 @@
 #include "strip.h"
 
-#include "tapemark.h"
-
+#include <stdio.h>
 #include <stdlib.h>
 
 int64_t strip_ink_end_modules(const layout_segment *segment)
 {
-    return (int64_t)segment->start_modules + (int64_t)tapemark_segment_width_modules(segment->cm_count, segment->bars);
+    size_t width = tapemark_segment_width_modules(segment->cm_count, segment->bars);
+    return (int64_t)segment->start_modules + (int64_t)width;
+}
+
+void strip_format_id(int32_t id, char text[STRIP_ID_BYTES])
+{
+    snprintf(text, STRIP_ID_BYTES, "%s%ld", id < 0 ? "\u2212" : "", labs((long)id));
+}
+
+void strip_format_code(const tape_layout *layout, const layout_segment *segment, char code[TAPEMARK_TM_MAX_CMS + 1])
+{
+    size_t length = segment->cm_count < TAPEMARK_TM_MAX_CMS ? segment->cm_count : TAPEMARK_TM_MAX_CMS;
+    for (size_t slot = 0; slot < length; slot++)
+        code[slot] = layout->ids[segment->first_cm + slot] >= 0 ? '1' : '0';
+    code[length] = '\0';
 }
 
 /* ---- Selecting ----------------------------------------------------------------------------------------- */
@@ -270,10 +283,12 @@ static bool add_pieces(const tape_layout *layout, const tape_stretch *stretch, c
     size_t number = last != NULL && last->stretch->line == stretch->line ? last->number + 1 : 1;
     tape_piece *added = pieces->items + pieces->count;
     size_t i = joints->count - 1;
-    for (size_t k = count; k-- > 0; i = joints->items[i].previous)
-        added[k] = (tape_piece){.stretch = stretch, .start_halves = joints->items[joints->items[i].previous].at_halves,
+    for (size_t k = count; k-- > 0; i = joints->items[i].previous) {
+        const joint *before = &joints->items[joints->items[i].previous];
+        added[k] = (tape_piece){.stretch = stretch, .start_halves = before->at_halves,
                                 .end_halves = joints->items[i].at_halves, .number = number + k,
                                 .joint_before = k > 0, .joint_after = k + 1 < count};
+    }
     assign_segments(layout, stretch, added, count);
     pieces->count += count;
     return true;

@@ -1,11 +1,12 @@
 /*
  * What is to be printed, still in one dimension: stretches of tape along a line, and the pieces they are cut into.
- * Places are counted in half modules from the beginning of the line, since tape is cut in the middle of light columns.
+ * Places are counted in half modules from the beginning of the line: tape is cut in the middle of light columns.
  */
 #ifndef PRINT_STRIP_H
 #define PRINT_STRIP_H
 
 #include "print.h"
+#include "tapemark.h"
 
 /* CMs that follow one another, with their quiet zones and bars where their segments end within. */
 typedef struct tape_stretch {
@@ -64,5 +65,13 @@ bool strip_cut(const tape_layout *layout, const tape_stretch *stretch, const tap
 
 /* Right edge of a segment's ink. */
 int64_t strip_ink_end_modules(const layout_segment *segment);
+
+enum { STRIP_ID_BYTES = 24 };
+
+/* As people read it, with a minus sign. */
+void strip_format_id(int32_t id, char text[STRIP_ID_BYTES]);
+
+/* A TM's bits, '1' for a light CM. */
+void strip_format_code(const tape_layout *layout, const layout_segment *segment, char code[TAPEMARK_TM_MAX_CMS + 1]);
 
 #endif
