@@ -74,9 +74,8 @@ refusal 'segments[0].cms[1] and segments[1].cms[0] both have the id -13' 's/15/-
 expect_refusal 1 'map: is a directory' --map "$(mkdir map && echo map)" tm.pgm
 : >empty.json
 expect_refusal 1 'empty.json: is not valid JSON: it ends too early at line 1, column 1' --map empty.json tm.pgm
-head -c 140000000 /dev/zero | tr '\0' ' ' >huge.json
+truncate -s 140000000 huge.json
 expect_refusal 1 'huge.json: is larger than 128 MB' --map huge.json tm.pgm
-rm huge.json
 if [ "$(id -u)" -ne 0 ]; then
     cp map.json secret.json
     chmod 0 secret.json
