@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TM_CMS_MIN = 3 };
-
 /* ---- Segments -------------------------------------------------------------------------------------------------- */
 
 /* The middle of the CMs stands for a segment whose ends are not known. */
@@ -25,8 +23,8 @@ static bool read_code(const map_reading *reading, const cJSON *item, map_segment
     const cJSON *complete = cJSON_GetObjectItemCaseSensitive(item, "complete");
     const char *code = json_get_text(item, "code");
     size_t length = code != NULL ? strlen(code) : 0;
-    if (json_has(item, "code") && (length < TM_CMS_MIN || length > MAP_CODE_MAX || strspn(code, "01") != length))
-        return map_reading_refuse(reading, IN_SEGMENT, "\"code\" must be %d to %d characters 0 and 1", TM_CMS_MIN,
+    if (json_has(item, "code") && (length < MAP_CODE_MIN || length > MAP_CODE_MAX || strspn(code, "01") != length))
+        return map_reading_refuse(reading, IN_SEGMENT, "\"code\" must be %d to %d characters 0 and 1", MAP_CODE_MIN,
                                   MAP_CODE_MAX);
     if (complete != NULL && !cJSON_IsBool(complete))
         return map_reading_refuse(reading, IN_SEGMENT, "\"complete\" must be true or false");

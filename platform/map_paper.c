@@ -102,9 +102,9 @@ static bool read_tm(const cJSON *item, map_entry *entry, error_text *error)
     if (is_text && is_blank(code) && !named)
         return true;
     size_t length = is_blank(code) ? 0 : strlen(code);
-    if (!named || length == 0 || length > MAP_CODE_MAX || strspn(code, "01") != length) {
-        error_text_set(error, "entry %zu (id %d): \"idtm\" must be a code of 0 and 1 and \"n_tm\" its number, or "
-                       "both blank", entry->number, entry->id);
+    if (!named || length < MAP_CODE_MIN || length > MAP_CODE_MAX || strspn(code, "01") != length) {
+        error_text_set(error, "entry %zu (id %d): \"idtm\" must be a code of %d to %d 0 and 1 and \"n_tm\" its "
+                       "number, or both blank", entry->number, entry->id, MAP_CODE_MIN, MAP_CODE_MAX);
         return false;
     }
     memcpy(entry->code, code, length + 1);

@@ -10,6 +10,9 @@
 #define MAP_FORMAT_NAME "tapemark-map"
 enum { MAP_FORMAT_VERSION = 1 };
 
+/* A TM has three CMs or more. */
+enum { MAP_CODE_MIN = 3 };
+
 /* The plan of the largest hall is smaller. */
 #define MAP_COORDINATE_MAX_M 1e6
 

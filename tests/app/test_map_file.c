@@ -141,6 +141,7 @@ static void malformed_maps_name_the_place(void **state)
     expect_error("[" ALONE(1, 0, 1e999) "]", "entry 1 (id 1): \"x\" and \"y\"");
     expect_error("[" ALONE(1, 0, -2000000) "]", "entry 1 (id 1): \"x\" and \"y\"");
     expect_error("[" OF_TM(1, 0, 0, 12, a) "]", "entry 1 (id 1): \"idtm\" must be a code");
+    expect_error("[" OF_TM(1, 0, 0, 10, a) "]", "entry 1 (id 1): \"idtm\" must be a code of 3 to 64 0 and 1");
     expect_error("[" OF_TM(1, 0, 0, 100, ) "]", "entry 1 (id 1): \"idtm\" must be a code");
     expect_error("[" OF_TM(1, 0, 0, , 1) "]", "entry 1 (id 1): \"idtm\" must be a code");
     expect_error("[{\"idcm_decimal\":1,\"x\":0,\"y\":0,\"idtm\":100}]", "entry 1 (id 1): \"idtm\" must be a code");
