@@ -38,7 +38,8 @@ typedef struct frame_report {
  * scripts depend on them. */
 void report_add_json(text_buffer *buffer, const frame_report *report);
 
-/* One row a marker; none for a frame without. */
+/* One row a marker; none for a frame without. Fields are named as in JSON; those that do not apply, and null, are
+ * empty. */
 void report_add_csv_header(text_buffer *buffer);
 void report_add_csv(text_buffer *buffer, const frame_report *report);
 
