@@ -16,7 +16,7 @@ static bool parse_code(const char *text, code_bits *code)
     for (; *text != '\0'; text++) {
         if ((*text != '0' && *text != '1') || code->length == TAPEMARK_MAP_CODE_MAX)
             return false;
-        code->bits = code->bits << 1 | (*text == '1' ? 1u : 0u);
+        code->bits = code->bits << 1 | (unsigned)(*text - '0');
         code->length++;
     }
     return code->length >= TAPEMARK_TM_MIN_CMS;
@@ -135,19 +135,20 @@ tapemark_status tapemark_map_find_cm(const tapemark_map *map, int32_t id, size_t
 /* How many TMs have a code: 0, 1 or 2, which stands for more, too; `index` is that of the first of them. */
 static unsigned count_tms(const tapemark_map *map, code_bits code, size_t *index)
 {
-    size_t begin = 0, end = map->tm_count;
-    while (begin < end) {
-        size_t middle = begin + (end - begin) / 2;
-        if (compare_code(&map->tms[middle], code) < 0)
-            begin = middle + 1;
-        else
-            end = middle;
+    /* All before `first` come before the code; of `left` from there on, it is not known. */
+    size_t first = 0, left = map->tm_count;
+    while (left > 0) {
+        size_t half = left / 2;
+        const tapemark_map_tm *middle = &map->tms[first + half];
+        bool before = (middle->length < code.length) | ((middle->length == code.length) & (middle->code < code.bits));
+        first = before ? first + half + 1 : first;
+        left = before ? left - half - 1 : half;
     }
     unsigned count = 0;
-    while (count < 2 && begin + count < map->tm_count && compare_code(&map->tms[begin + count], code) == 0)
+    while (count < 2 && first + count < map->tm_count && compare_code(&map->tms[first + count], code) == 0)
         count++;
     if (count > 0)
-        *index = begin;
+        *index = first;
     return count;
 }
 
