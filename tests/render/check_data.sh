@@ -67,14 +67,14 @@ for kept in "$data"/*; do
         [ "${name%.png}" != "$name" ] || complain "data/$name: no command in README.md makes it"
         continue
     fi
-    as_bytes "$kept" >kept
-    as_bytes "data/$name" >made
-    size=$(wc -c <kept)
-    if [ "$size" -ne "$(wc -c <made)" ]; then
-        complain "data/$name: is $size bytes, comes out as $(wc -c <made)"
+    as_bytes "$kept" >kept.bytes
+    as_bytes "data/$name" >made.bytes
+    size=$(wc -c <kept.bytes)
+    if [ "$size" -ne "$(wc -c <made.bytes)" ]; then
+        complain "data/$name: is $size bytes, comes out as $(wc -c <made.bytes)"
         continue
     fi
-    different=$(cmp -l kept made | wc -l)
+    different=$(cmp -l kept.bytes made.bytes | wc -l)
     [ $((different * 1000)) -le "$size" ] || complain "data/$name: $different of $size bytes come out differently"
 done
 [ "$failures" -eq 0 ]
