@@ -88,7 +88,8 @@ static void defocus_of_a_disc_is_even_within_it_and_keeps_the_light(void **state
         scene view = with_square(1, 250);
         view.optics.disc_px = r;
         render(&view, samples);
-        assert_near(mean_of(samples) * PIXELS, 250, 0.6);
+        /* Each pixel of the disc may be rounded by half of 1 / 257 of a gray level. */
+        assert_near(mean_of(samples) * PIXELS, 250, 0.3 + 0.002 * 3.15 * (r + 1) * (r + 1));
         double inside = 250 / fmax(3.14159265 * r * r, 1), variance = 0;
         for (int32_t x = -30; x <= 30; x++) {
             for (int32_t y = -30; y <= 30; y++) {
@@ -229,11 +230,22 @@ static scene_camera moved(const scene *view, double exposures)
     return camera;
 }
 
+static double largest_difference(const uint16_t *picture, const double *expected)
+{
+    double most = 0;
+    for (int i = 0; i < PIXELS; i++) {
+        double difference = fabs(picture[i] * (255 / 65535.0) - expected[i]);
+        if (difference > most)
+            most = difference;
+    }
+    return most;
+}
+
 static void a_moving_camera_sees_the_mean_of_its_poses(void **state)
 {
     (void)state;
-    enum { POSES = 100 };
-    static double sums[PIXELS];
+    enum { POSES = 24 };
+    static double sums[PIXELS], one[PIXELS];
     static const scene_move moves[] = {
         {.by_m = {0.02, 0.01, 0}}, {.by_m = {0, 0, 0.04}}, {.yaw_deg = 1.5}, {.pitch_deg = -1, .roll_deg = 2},
     };
@@ -251,16 +263,13 @@ static void a_moving_camera_sees_the_mean_of_its_poses(void **state)
             for (int p = 0; p < PIXELS; p++)
                 sums[p] += other[p] * (255 / 65535.0) / POSES;
         }
-        double most = 0, blurred = 0;
+        /* Steps of half a pixel leave an edge with a contrast of 158 off by less than this. */
+        assert_near(largest_difference(samples, sums), 0, 12);
         still.camera = view.camera;
         render(&still, other);
-        for (int p = 0; p < PIXELS; p++) {
-            most = fmax(most, fabs(samples[p] * (255 / 65535.0) - sums[p]));
-            blurred = fmax(blurred, fabs(samples[p] * (255 / 65535.0) - other[p] * (255 / 65535.0)));
-        }
-        /* Steps of half a pixel leave an edge with a contrast of 158 off by less than this. */
-        assert_near(most, 0, 12);
-        assert_true(blurred > 40);
+        for (int p = 0; p < PIXELS; p++)
+            one[p] = other[p] * (255 / 65535.0);
+        assert_true(largest_difference(samples, one) > 40);
         /* The truth is that of the middle of the exposure. */
         assert_near((double)corner.x_px, (double)truth.cms[0].corners[0].x_px, 1e-6);
         assert_near((double)corner.y_px, (double)truth.cms[0].corners[0].y_px, 1e-6);
@@ -306,7 +315,7 @@ static void a_rolling_shutter_sees_each_row_at_its_time(void **state)
             /* And the row shows what that camera sees, but for its own little motion. */
             int32_t row = (int32_t)floor((double)seen.y_px + 0.5);
             for (int32_t x = 0; x < WIDTH_PX; x++)
-                assert_near(at(samples, x, row), at(other, x, row), 60);
+                assert_near(at(samples, x, row), at(other, x, row), 40);
         }
     }
     scene global = view;
