@@ -118,6 +118,12 @@ static unsigned take_code(laying *all, unsigned longest, uint32_t *code)
 static bool refuse_ids(laying *all)
 {
     double lines_m = 0;
+    if (all->wanted->cms_wanted > 0) {
+        error_text_set(all->error, "ids end at %d: from %d on they do for %d of the %u CMs wanted", TAPEMARK_MAX_ID,
+                       (int)all->wanted->first_id, TAPEMARK_MAX_ID - (int)all->wanted->first_id + 1,
+                       all->wanted->cms_wanted);
+        return false;
+    }
     for (size_t i = 0; i < all->wanted->line_count; i++)
         lines_m += plan_line_length_m(&all->wanted->lines[i]);
     error_text_set(all->error, "ids end at %d: from %d on they cover %.1f m of the %.1f m wanted; make the module "

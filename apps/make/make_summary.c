@@ -35,8 +35,10 @@ void make_summary_print(const plan *wanted, const tape_layout *layout, FILE *out
     for (size_t i = 0; i < wanted->line_count; i++)
         lines_m += plan_line_length_m(&wanted->lines[i]);
     int32_t last_id = wanted->first_id + (int32_t)layout->cm_count - 1;
-    fprintf(out, "%zu CM%s, ids %d to %d: ", layout->cm_count, plural(layout->cm_count), (int)wanted->first_id,
-            (int)last_id);
+    if (layout->cm_count == 1)
+        fprintf(out, "1 CM, id %d: ", (int)last_id);
+    else
+        fprintf(out, "%zu CMs, ids %d to %d: ", layout->cm_count, (int)wanted->first_id, (int)last_id);
     print_pieces(layout, out);
     fprintf(out, "\n%.2f m of tape on %zu line%s of %.2f m, %.4g mm tall\n", metres(wanted, tape_modules),
             wanted->line_count, plural(wanted->line_count), lines_m, wanted->module_mm * TAPEMARK_HEIGHT_MODULES);

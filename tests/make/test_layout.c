@@ -190,6 +190,9 @@ static void ids_that_run_out_are_an_error(void **state)
     wanted.first_id = TAPEMARK_MAX_ID - 4;
     assert_false(layout_make(&wanted, &layout, &error));
     assert_non_null(strstr(error.text, "cover 0.0 m"));
+    wanted.cms_wanted = 6;
+    assert_false(layout_make(&wanted, &layout, &error));
+    assert_string_equal(error.text, "ids end at 1505582: from 1505578 on they do for 5 of the 6 CMs wanted");
     plan_release(&wanted);
 }
 

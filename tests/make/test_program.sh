@@ -66,6 +66,8 @@ expect_lines err 0
 expect made/map.json '"code": "100000"'
 [ "$(head -c 5 made/tape.pdf)" = %PDF- ] || fail 'no PDF'
 
+run 0 --cms 1 --first-id 7 -o made
+expect out '1 CM, id 7: 1 CM alone'
 run 0 --line 3.1m --module 5mm --paper roll -o made --svg --png 101.6 --pgm 101.6 --paper-map --quiet
 expect_lines out 0
 pieces=$(for piece in 001-cm0000-0005 002-cm0006-0011 003-cm0012-0017; do
@@ -92,6 +94,8 @@ diff -r made again >err || fail 'not the same twice'
 rm -r again
 
 # Pieces to mend a tape with leave the rest alone.
+echo >>made/tape.pdf
+echo >>made/map.json
 cp made/tape.pdf made/map.json .
 run 0 --line 3.1m --module 5mm -o made --only 17..18
 expect out 'repair.pdf: '
