@@ -203,7 +203,7 @@ plan '' "$upper,$upper,$upper,$upper,$upper,$upper"
 run 0 plan.json -o whole
 snapshot >../before
 signal=INT
-for pause in 0.001 0.03 0.06 0.1 0.13 0.16 0.2 0.24 0.28 0.32 0.4 0.6; do
+for pause in 0.001 0.04 0.08 0.12 0.17 0.23 0.3 0.5; do
     timeout -s "$signal" "$pause" "$program" plan.json -o cut >out 2>err || :
     if [ -d cut ]; then
         diff -r cut whole >/dev/null || fail 'half-written files'
