@@ -234,6 +234,7 @@ static void flaws_of_cms_are_found(void **state)
     EXPECT_FLAW(7, cms[7].y_m, INFINITY);
     EXPECT_FLAW(15, cms[15].dx, 0.5f);
     EXPECT_FLAW(15, cms[15].dy, NAN);
+    EXPECT_FLAW(0, cms[0].tm, TM_COUNT);
     EXPECT_FLAW(1, cms[1].tm, TM_COUNT);
     EXPECT_FLAW(1, cms[1].tm, -2);
     EXPECT_FLAW(0, cms[0].tm, -2);
