@@ -64,7 +64,7 @@ scene_vector vector_of(const cv::Vec3d &v)
 // are some percent longer than they are high, so what is rendered has their length, and their middle line.
 scene_tape place(const walk_tape &seen, const std::vector<std::int32_t> &ids, const cv::Mat &gray)
 {
-    constexpr double middle = TAPEMARK_HEIGHT_MODULES / 2.0;
+    constexpr double middle = static_cast<double>(TAPEMARK_HEIGHT_MODULES) / 2;
     const cv::Matx33d to_ray(1 / focal_px, 0, -(gray.cols - 1) / 2.0 / focal_px, 0, 1 / focal_px,
                              -(gray.rows - 1) / 2.0 / focal_px, 0, 0, 1);
     const cv::Matx33d h = to_ray * homography_of(seen.corners, width_modules_of(seen));

@@ -85,6 +85,18 @@ void tapes_in_a_row_are_where_the_truth_says(void **)
     assert_int_equal(assert_read(seen, 0.5), 6);
 }
 
+// 10 mm at 500 px a metre away are 5 px.
+void a_row_has_its_gaps_and_its_middle(void **)
+{
+    const view seen = render("--ids 5 --ids 6 --module 10mm --gap 100mm --distance 1m --focal 500 --x 10 --y -20");
+    const auto &left = seen.truth[0].cms.at(0).corners, &right = seen.truth[0].cms.at(1).corners;
+    const double edges[] = {10 - 25 - 160, 10 - 25, 10 + 25, 10 + 25 + 160}, middle_x = 319.5, middle_y = 239.5;
+    assert_true(std::fabs(left[0].x - middle_x - edges[0]) < 0.02 && std::fabs(left[1].x - middle_x - edges[1]) < 0.02);
+    assert_true(std::fabs(right[0].x - middle_x - edges[2]) < 0.02);
+    assert_true(std::fabs(right[1].x - middle_x - edges[3]) < 0.02);
+    assert_true(std::fabs((left[0].y + left[3].y) / 2 - middle_y + 20) < 0.02);
+}
+
 void distance_and_angle_are_what_was_asked_for(void **)
 {
     const view seen = render("--ids 5 --distance 1.2m --yaw 30 --focal 700");
@@ -250,6 +262,18 @@ void an_open_shutter_blurs_as_far_as_things_move(void **)
     assert_true(difference(open, still) > 5);
 }
 
+// A camera that goes around a tape and looks at it sees it sharply: it moves and turns at the same time.
+void what_is_looked_at_stays_sharp(void **)
+{
+    write_text("around.csv", "time_s,x_m,y_m,height_m,heading_deg\n0,1,1,0.5,5.7106\n1,1,1.4,0.5,-5.7106\n");
+    const std::string scene = "--ids 5 --at 3,1.2,0.5,180 --fps 2 --focal 800 --size 640x240 --noise 0 --shot-noise 0 ";
+    const cv::Range tape(90, 150);
+    const cv::Mat still = render(scene + "--path around.csv", 3).frames[1].rowRange(tape);
+    const cv::Mat open = render(scene + "--path around.csv --shutter 50ms", 3).frames[1].rowRange(tape);
+    print_message("going around it: %.2f gray levels from standing still\n", difference(open, still));
+    assert_true(difference(open, still) < 1.5);
+}
+
 /* ---- Time ------------------------------------------------------------------------------------------------ */
 
 // Of all that has been run and has ended.
@@ -301,6 +325,7 @@ int main()
 {
     const CMUnitTest tests[] = {
         IN_OWN_FOLDER(tapes_in_a_row_are_where_the_truth_says),
+        IN_OWN_FOLDER(a_row_has_its_gaps_and_its_middle),
         IN_OWN_FOLDER(distance_and_angle_are_what_was_asked_for),
         IN_OWN_FOLDER(a_room_is_read_as_its_map_says),
         IN_OWN_FOLDER(walls_hide_what_is_behind_them),
@@ -310,6 +335,7 @@ int main()
         IN_OWN_FOLDER(pictures_on_the_plan_face_where_they_are_told_to),
         IN_OWN_FOLDER(a_path_moves_the_picture_as_it_should),
         IN_OWN_FOLDER(an_open_shutter_blurs_as_far_as_things_move),
+        IN_OWN_FOLDER(what_is_looked_at_stays_sharp),
         cmocka_unit_test(frames_take_little_time),
     };
     return cmocka_run_group_tests(tests, nullptr, nullptr);
