@@ -173,13 +173,15 @@ static void a_wall_is_furnished_within_its_bounds(void **state)
             assert_true(top < 2.6 + 1e-9 && bottom > -1e-9);
             assert_near(panels[i].origin_m.z, -2, 1e-9);
         }
+        assert_near(panels[0].origin_m.y + panels[0].height_m, 0, 1e-9); /* the baseboard stands on the floor */
         assert_int_equal(scene_furnish(line, 2.6, seed, fewer, 5), count < 5 ? count : 5);
         assert_memory_equal(fewer, panels, (count < 5 ? count : 5) * sizeof *fewer);
     }
     assert_true(most > 10);
     scene view = scene_ideal(WIDTH_PX, HEIGHT_PX);
     view.panels = panels;
-    view.panel_count = scene_furnish((scene_line){0, 0, 0.3, 0}, 0.2, 3, panels, SCENE_FURNISHING_MAX);
+    view.panel_count = scene_furnish((scene_line){0, 0, 8, 0}, 0.2, 3, panels, SCENE_FURNISHING_MAX);
+    assert_int_equal(view.panel_count, 4); /* too low for anything but its foot */
     assert_null(scene_problem(&view));
 }
 

@@ -123,10 +123,10 @@ static void add_thing(furnishing *all, double left_m, double room_m)
 size_t scene_furnish(scene_line wall, double height_m, uint64_t seed, scene_panel *panels, size_t capacity)
 {
     enum { THINGS_MAX = 6 };
-    const double least_room_m = 1.6;
+    const double least_room_m = 1.6, least_height_m = 1.3;
     furnishing all = {.wall = scene_wall(wall, height_m), .panels = panels, .capacity = capacity, .random = {seed}};
     add_foot(&all);
-    int things = (int)fmin(floor(all.wall.width_m / least_room_m), THINGS_MAX);
+    int things = height_m < least_height_m ? 0 : (int)fmin(floor(all.wall.width_m / least_room_m), THINGS_MAX);
     for (int i = 0; i < things; i++) {
         double room_m = all.wall.width_m / things;
         if (random_unit(&all.random) < 0.85)
