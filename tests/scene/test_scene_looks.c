@@ -173,7 +173,8 @@ static void a_wall_is_furnished_within_its_bounds(void **state)
             assert_true(top < 2.6 + 1e-9 && bottom > -1e-9);
             assert_near(panels[i].origin_m.z, -2, 1e-9);
         }
-        assert_near(panels[0].origin_m.y + panels[0].height_m, 0, 1e-9); /* the baseboard stands on the floor */
+        assert_near(panels[0].origin_m.y + panels[0].height_m, 0, 1e-9); /* the baseboard stands on the floor, */
+        assert_near(panels[1].origin_m.y + panels[1].height_m, panels[0].origin_m.y, 1e-9); /* its groove on it */
         assert_int_equal(scene_furnish(line, 2.6, seed, fewer, 5), count < 5 ? count : 5);
         assert_memory_equal(fewer, panels, (count < 5 ? count : 5) * sizeof *fewer);
     }

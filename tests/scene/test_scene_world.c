@@ -319,8 +319,8 @@ static void the_nearer_hides_whatever_the_order(void **state)
     render(&view);
     assert_int_equal(at(140, 120), 50);
     assert_int_equal(at(180, 120), 200);
-    /* They cross in the middle of pixel 160, which is half of each: the one that is drawn later is taken for nearer up
-     * to a millimetre behind. */
+    /* They cross in the middle of pixel 160, which is half of each: the one that is drawn later is taken for nearer
+     * up to a millimetre behind. */
     view.camera.position_m.x -= 0.5 * 2 / 200;
     render(&view);
     assert_int_equal(at(159, 120), 50);
