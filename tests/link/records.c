@@ -407,6 +407,17 @@ static size_t bytes_of_hex(const char *hex, uint8_t *bytes, size_t size)
     return count;
 }
 
+static size_t copy_line(void *to, size_t size, const char *line, const char *ending)
+{
+    const size_t length = strlen(line);
+    const size_t ending_length = strlen(ending);
+    if (length + ending_length > size)
+        abort();
+    memcpy(to, line, length);
+    memcpy((char *)to + length, ending, ending_length);
+    return length + ending_length;
+}
+
 bool read_vector(FILE *file, test_vector *vector)
 {
     char line[512];
@@ -417,9 +428,9 @@ bool read_vector(FILE *file, test_vector *vector)
             return false;
         line[strcspn(line, "\n")] = '\0';
         if (take_line(line, "fields: ", &value))
-            snprintf(vector->fields, sizeof vector->fields, "%s", value);
+            copy_line(vector->fields, sizeof vector->fields - 1, value, "");
         else if (take_line(line, "sentence: ", &value))
-            vector->sentence_size = (size_t)snprintf((char *)vector->sentence, sizeof vector->sentence, "%s\r\n", value);
+            vector->sentence_size = copy_line(vector->sentence, sizeof vector->sentence, value, "\r\n");
         else if (take_line(line, "packet: ", &value))
             vector->packet_size = bytes_of_hex(value, vector->packet, sizeof vector->packet);
         else if (line[0] != '#' && line[0] != '\0')

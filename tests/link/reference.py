@@ -145,7 +145,7 @@ class Page:
         rows = [[cell.strip() for cell in line.strip("|\n").split("|")]
                 for line in self.text.splitlines() if line.startswith("|")]
         for row in rows:
-            if len(row) == 7 and row[2].isdigit():
+            if len(row) == 7 and re.fullmatch("[A-Z]", row[1]):
                 self.records[row[0]] = Record(*row[:2], int(row[2]))
                 self.stated[row[0]] = row[3:]
         record = None

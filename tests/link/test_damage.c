@@ -8,7 +8,7 @@ enum { CRC_ODDS = 65536 };
 
 /* Four records one after the other; the second is damaged on its way. */
 typedef struct test_line {
-    tapemark_record records[4];
+    char texts[4][RECORD_TEXT_BYTES];
     message messages[4];
 } test_line;
 
@@ -19,8 +19,9 @@ static test_line random_line(uint32_t *random, uint8_t victim_type, tapemark_enc
     test_line made;
     for (int i = 0; i < 4; i++) {
         const uint8_t type = i == VICTIM ? victim_type : (uint8_t)(1 + random_below(random, RECORD_TYPES));
-        made.records[i] = random_record(random, type);
-        made.messages[i] = message_of(&made.records[i], encoding);
+        const tapemark_record record = random_record(random, type);
+        record_to_text(&record, made.texts[i]);
+        made.messages[i] = message_of(&record, encoding);
     }
     return made;
 }
@@ -31,30 +32,42 @@ typedef struct line_outcome {
     unsigned damaged;
 } line_outcome;
 
+static void push_damaged(tapemark_receiver *receiver, uint8_t byte, const char *victim, line_outcome *outcome)
+{
+    if (tapemark_receiver_push(receiver, byte) == TAPEMARK_RECORD_NONE)
+        return;
+    char text[RECORD_TEXT_BYTES];
+    record_to_text(&receiver->record, text);
+    if (strcmp(text, victim) == 0 && !outcome->victim_taken)
+        outcome->victim_taken = true;
+    else
+        outcome->wrong++;
+}
+
+static void assert_received(const tapemark_receiver *receiver, const char *expected)
+{
+    char text[RECORD_TEXT_BYTES];
+    record_to_text(&receiver->record, text);
+    assert_string_equal(text, expected);
+}
+
 /* Sends the line with other bytes in the victim's place. The records around it have to arrive, whole and in order. */
 static line_outcome send_line(const test_line *line, const uint8_t *bytes, size_t size)
 {
     line_outcome outcome = {false, 0, 0};
     tapemark_receiver receiver = {0};
     assert_int_equal(push_message(&receiver, &line->messages[0]), 1);
-    assert_same_record(&receiver.record, &line->records[0]);
+    assert_received(&receiver, line->texts[0]);
 
     for (size_t i = 0; i < size; i++)
-        if (tapemark_receiver_push(&receiver, bytes[i]) != TAPEMARK_RECORD_NONE) {
-            char text[RECORD_TEXT_BYTES];
-            char expected[RECORD_TEXT_BYTES];
-            record_to_text(&receiver.record, text);
-            record_to_text(&line->records[VICTIM], expected);
-            if (strcmp(text, expected) == 0 && !outcome.victim_taken)
-                outcome.victim_taken = true;
-            else
-                outcome.wrong++;
-        }
-
-    for (int i = 2; i < 4; i++) {
-        assert_int_equal(push_message(&receiver, &line->messages[i]), 1);
-        assert_same_record(&receiver.record, &line->records[i]);
-    }
+        push_damaged(&receiver, bytes[i], line->texts[VICTIM], &outcome);
+    /* The delimiter before the next record ends the victim where its own is gone. */
+    const message *const next = &line->messages[2];
+    push_damaged(&receiver, next->bytes[0], line->texts[VICTIM], &outcome);
+    assert_int_equal(push_all(&receiver, next->bytes + 1, next->size - 1), 1);
+    assert_received(&receiver, line->texts[2]);
+    assert_int_equal(push_message(&receiver, &line->messages[3]), 1);
+    assert_received(&receiver, line->texts[3]);
     outcome.damaged = receiver.damaged;
     return outcome;
 }
@@ -63,12 +76,13 @@ static line_outcome send_line(const test_line *line, const uint8_t *bytes, size_
  * Answers the new size. */
 typedef size_t (*damage)(uint8_t *bytes, size_t size, size_t at);
 
-/* Each damage at each of its places, on records of all types in both encodings. */
-static void strike_everywhere(damage strike, size_t places_per_byte)
+/* Each damage at each of its places, on records of all types in both encodings. Where little of a record is left, a
+ * receiver cannot count it; otherwise it has to. */
+static void strike_everywhere(damage strike, size_t places_per_byte, bool counted)
 {
     uint32_t random = 1;
     for (uint8_t type = 1; type <= RECORD_TYPES; type++)
-        for (int round = 0; round < 16; round++) {
+        for (int round = 0; round < 8; round++) {
             const tapemark_encoding encoding = round % 2 ? TAPEMARK_PACKETS : TAPEMARK_SENTENCES;
             const test_line line = random_line(&random, type, encoding);
             const message *victim = &line.messages[VICTIM];
@@ -79,7 +93,7 @@ static void strike_everywhere(damage strike, size_t places_per_byte)
                 const line_outcome outcome = send_line(&line, bytes, size);
                 assert_int_equal(outcome.wrong, 0);
                 /* A sentence whose first letters are hit is nobody's. */
-                if (!outcome.victim_taken && (encoding == TAPEMARK_PACKETS || at >= 6 * places_per_byte))
+                if (counted && !outcome.victim_taken && (encoding == TAPEMARK_PACKETS || at >= 6 * places_per_byte))
                     assert_true(outcome.damaged > 0);
             }
         }
@@ -153,40 +167,40 @@ static size_t insert_dollar(uint8_t *bytes, size_t size, size_t at)
 static void each_bit_flipped(void **state)
 {
     (void)state;
-    strike_everywhere(flip_bit, 8);
+    strike_everywhere(flip_bit, 8, true);
 }
 
 static void each_byte_dropped(void **state)
 {
     (void)state;
-    strike_everywhere(drop_byte, 1);
+    strike_everywhere(drop_byte, 1, true);
 }
 
 static void each_byte_doubled(void **state)
 {
     (void)state;
-    strike_everywhere(double_byte, 1);
+    strike_everywhere(double_byte, 1, true);
 }
 
 static void each_two_neighbours_swapped(void **state)
 {
     (void)state;
-    strike_everywhere(swap_with_next, 1);
-    strike_everywhere(swap_with_the_one_after_next, 1);
+    strike_everywhere(swap_with_next, 1, true);
+    strike_everywhere(swap_with_the_one_after_next, 1, true);
 }
 
 static void cut_at_each_byte(void **state)
 {
     (void)state;
-    strike_everywhere(cut_off, 1);
-    strike_everywhere(lose_the_front, 1);
+    strike_everywhere(cut_off, 1, false);
+    strike_everywhere(lose_the_front, 1, false);
 }
 
 static void a_delimiter_at_each_byte(void **state)
 {
     (void)state;
-    strike_everywhere(insert_zero, 1);
-    strike_everywhere(insert_dollar, 1);
+    strike_everywhere(insert_zero, 1, true);
+    strike_everywhere(insert_dollar, 1, true);
 }
 
 /* ---- Worse damage: here the CRC's odds are all there is ------------------------------------------------- */
@@ -210,7 +224,7 @@ static size_t strike_at_random(uint32_t *random, uint8_t *bytes, size_t size)
 static void random_damage_is_within_the_odds(void **state)
 {
     (void)state;
-    enum { TRIALS = 120000 };
+    enum { TRIALS = 60000 };
     uint32_t random = 5;
     unsigned wrong = 0;
     unsigned lost = 0;
@@ -233,7 +247,7 @@ static void random_damage_is_within_the_odds(void **state)
 static void random_packets_pass_as_often_as_chance_has_it(void **state)
 {
     (void)state;
-    enum { TRIALS = 1 << 21, EXPECTED = TRIALS / CRC_ODDS };
+    enum { TRIALS = 1 << 20, EXPECTED = TRIALS / CRC_ODDS };
     uint32_t random = 6;
     tapemark_receiver receiver = {0};
     unsigned records = 0;
@@ -257,7 +271,7 @@ static void noise_between_messages_costs_none(void **state)
     uint32_t random = 7;
     for (tapemark_encoding encoding = TAPEMARK_SENTENCES; encoding <= TAPEMARK_PACKETS; encoding++) {
         tapemark_receiver receiver = {0};
-        for (int round = 0; round < 20000; round++) {
+        for (int round = 0; round < 10000; round++) {
             for (uint32_t noise = random_below(&random, 150); noise > 0; noise--)
                 assert_int_equal(tapemark_receiver_push(&receiver, (uint8_t)next_random(&random)), 0);
             const tapemark_record record = random_record(&random, (uint8_t)(1 + round % RECORD_TYPES));
@@ -274,7 +288,7 @@ static void pieces_of_messages_between_messages_cost_none(void **state)
     (void)state;
     uint32_t random = 8;
     tapemark_receiver receiver = {0};
-    for (int round = 0; round < 20000; round++) {
+    for (int round = 0; round < 10000; round++) {
         const tapemark_encoding encoding = random_below(&random, 2) ? TAPEMARK_PACKETS : TAPEMARK_SENTENCES;
         const tapemark_record torn = random_record(&random, (uint8_t)(1 + random_below(&random, RECORD_TYPES)));
         const message piece = message_of(&torn, encoding);
@@ -294,7 +308,7 @@ static void changing_the_encoding_is_no_damage(void **state)
     (void)state;
     uint32_t random = 9;
     tapemark_receiver receiver = {0};
-    for (int round = 0; round < 20000; round++) {
+    for (int round = 0; round < 10000; round++) {
         const tapemark_record record = random_record(&random, (uint8_t)(1 + round % RECORD_TYPES));
         const message sent = message_of(&record, random_below(&random, 2) ? TAPEMARK_PACKETS : TAPEMARK_SENTENCES);
         assert_int_equal(push_message(&receiver, &sent), 1);
