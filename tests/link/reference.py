@@ -200,7 +200,7 @@ def ms(length):
 def check_page(page):
     complaints = []
     for name, record in page.records.items():
-        found = [str(record.sentence_max()), ms(record.sentence_max()), str(record.packet_max()), ms(record.packet_max())]
+        found = [text for length in (record.sentence_max(), record.packet_max()) for text in (str(length), ms(length))]
         if page.stated[name] != found:
             complaints.append(f"{name}: the page says {page.stated[name]}, its fields make {found}")
         if record.sentence_max() > 82 or record.packet_max() > 64:
@@ -211,7 +211,13 @@ def check_page(page):
             page.decode_sentence(example.encode() + b"\r\n")
         except ValueError as error:
             complaints.append(f"an example of the page: {error}")
-    if not examples or crc16(b"123456789") != 0x29B1:
+    packets = re.findall(r"^00 [0-9a-f ]* 00$", page.text, re.MULTILINE)
+    for packet in packets:
+        try:
+            page.decode_packet(bytes.fromhex(packet)[1:-1])
+        except ValueError as error:
+            complaints.append(f"{packet}: {error}")
+    if not examples or not packets or crc16(b"123456789") != 0x29B1:
         complaints.append("no examples, or another CRC")
     return complaints
 

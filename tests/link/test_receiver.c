@@ -211,6 +211,8 @@ static void sentences_that_break_the_rules_are_damaged(void **state)
         "PTMKP,1,2,01,-3,4,",           /* likewise, by its flag */
         "PTMKP,1,2,00,-3,4,5",          /* not empty, and is not known */
         "PTMKP,1,2,01,-3,4",            /* too few */
+        "PTMKP,1,2,00,-3,4",            /* too few, though the missing one would be empty */
+        "PTMKA,1,OK,2",
         "PTMKP",                        /* none */
         "PTMKP,65536,2,01,-3,4,5",      /* u16 */
         "PTMKP,1,256,01,-3,4,5",        /* u8 */

@@ -1,6 +1,6 @@
 /*
- * One function a record writes it in either encoding: the fields of both are the same, in the same order. It is
- * written from the page of the format and not from the receiver's table, so that neither repeats the other's mistakes.
+ * One function a record writes it in either encoding: the fields of both are the same, in the same order. They are
+ * written from the page of the format and not from the receiver's table: neither end repeats the other's mistakes.
  */
 #include "tapemark_sender.h"
 

@@ -143,19 +143,13 @@ static const field_rule *first_rule(uint8_t type)
 
 /* ---- Both encodings ----------------------------------------------------------------------------------- */
 
+enum { CRC_START = 0xffff };
+
 uint16_t tapemark_crc16(uint16_t crc, uint8_t byte)
 {
     uint8_t x = (uint8_t)(crc >> 8 ^ byte);
     x ^= (uint8_t)(x >> 4);
     return (uint16_t)(crc << 8 ^ (uint16_t)x << 12 ^ (uint16_t)x << 5 ^ x);
-}
-
-static uint16_t crc16_of(const uint8_t *bytes, uint8_t count)
-{
-    uint16_t crc = 0xffff;
-    while (count-- > 0)
-        crc = tapemark_crc16(crc, *bytes++);
-    return crc;
 }
 
 bool tapemark_is_text(char character)
@@ -215,34 +209,35 @@ static uint8_t hex_digit(uint8_t character)
     return 0xff;
 }
 
-static bool parse_hex(const uint8_t *text, uint8_t length, uint32_t *value)
+static bool parse_hex(const uint8_t *text, uint8_t length, uint32_t *result)
 {
-    *value = 0;
+    uint32_t value = 0;
     for (; length > 0; length--) {
         const uint8_t digit = hex_digit(*text++);
         if (digit > 15)
             return false;
-        *value = *value << 4 | digit;
+        value = value << 4 | digit;
     }
+    *result = value;
     return true;
 }
 
-/* A whole number up to `max`, which is at least 9. */
-static bool parse_decimal(const uint8_t *text, uint8_t length, uint32_t max, uint32_t *value)
+/* A whole number up to `max`. */
+static bool parse_decimal(const uint8_t *text, uint8_t length, uint32_t max, uint32_t *result)
 {
-    *value = 0;
+    const uint32_t tenth_of_most = UINT32_MAX / 10;
+    const uint8_t last_digit_of_most = UINT32_MAX % 10;
+    uint32_t value = 0;
     if (length == 0)
         return false;
     for (; length > 0; length--) {
         const uint8_t digit = (uint8_t)(*text++ - '0');
-        /* max / 10, without a division: 429496729 is right for the greatest max, and lesser ones are caught below. */
-        if (digit > 9 || *value > 429496729u || (*value == 429496729u && digit > 5))
+        if (digit > 9 || value > tenth_of_most || (value == tenth_of_most && digit > last_digit_of_most))
             return false;
-        *value = *value * 10 + digit;
-        if (*value > max)
-            return false;
+        value = value * 10 + digit;
     }
-    return true;
+    *result = value;
+    return value <= max;
 }
 
 static bool parse_number(const uint8_t *text, uint8_t length, uint8_t kind, uint32_t *value)
@@ -390,7 +385,7 @@ static tapemark_record_type end_sentence(tapemark_receiver *receiver)
     uint32_t crc = 0;
     if (receiver->sentence.sum != receiver->sentence.sum_read || length < FIELDS_AT + CRC_DIGITS ||
         body[FIELDS_AT - 1] != ',' || body[checked - 1] != ',' || !parse_hex(body + checked, CRC_DIGITS, &crc) ||
-        crc != crc16_of(body, checked)) {
+        crc != receiver->sentence.crc_of_fields) {
         give_up_sentence(receiver);
         return TAPEMARK_RECORD_NONE;
     }
@@ -414,6 +409,10 @@ static void push_body(tapemark_receiver *receiver, uint8_t byte)
         receiver->sentence.body[length] = (char)byte;
         receiver->sentence.length++;
         receiver->sentence.sum ^= byte;
+        /* Taken along rather than at the end, where the work is. */
+        receiver->sentence.crc = tapemark_crc16(receiver->sentence.crc, byte);
+        if (byte == ',')
+            receiver->sentence.crc_of_fields = receiver->sentence.crc;
     }
 }
 
@@ -424,6 +423,7 @@ static tapemark_record_type push_to_sentence(tapemark_receiver *receiver, uint8_
         receiver->sentence.state = SENTENCE_BODY;
         receiver->sentence.length = 0;
         receiver->sentence.sum = 0;
+        receiver->sentence.crc = CRC_START;
         return TAPEMARK_RECORD_NONE;
     }
 
@@ -465,6 +465,14 @@ typedef enum packet_state {
     PACKET_DATA,
     PACKET_BROKEN /* too long */
 } packet_state;
+
+static uint16_t crc16_of(const uint8_t *bytes, uint8_t count)
+{
+    uint16_t crc = CRC_START;
+    while (count-- > 0)
+        crc = tapemark_crc16(crc, *bytes++);
+    return crc;
+}
 
 static tapemark_record_type end_packet(tapemark_receiver *receiver)
 {
@@ -596,7 +604,7 @@ size_t tapemark_command_write(char *buffer, size_t size, uint16_t number, const 
 {
     sentence_writer writer = {buffer, size, 0, 0, 0};
     write_char(&writer, '$');
-    writer.crc = 0xffff;
+    writer.crc = CRC_START;
     writer.sum = 0;
     for (const char *start = "PTMKQ,"; *start != '\0'; start++)
         write_char(&writer, *start);

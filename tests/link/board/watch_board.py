@@ -4,6 +4,7 @@ Sends records to an emulated board that runs the Arduino example, over its seria
 understood with what was sent: all vectors in both encodings and mixed, with noise and damaged records among them."""
 import os
 import random
+import re
 import select
 import subprocess
 import sys
@@ -15,6 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), ".."))
 import reference  # noqa: E402
 
 ANSWER_WITHIN_S = 60
+PUSH_WITHIN_CYCLES = 11200  # 0.7 ms, as the page says
 
 
 def expected_line(record, values):
@@ -54,8 +56,10 @@ class Board:
         return False
 
     def stop(self):
-        self.process.stdin.close()
-        return self.process.wait(timeout=30)
+        """Bytes that came and cycles of the longest push, or None when the board failed."""
+        report, _ = self.process.communicate(timeout=30)
+        numbers = re.findall(rb"\d+", report)
+        return list(map(int, numbers)) if self.process.returncode == 0 and len(numbers) == 2 else None
 
 
 def damaged(message, dice):
@@ -105,15 +109,20 @@ def main():
     board.said = b""
     if not board.exchange(stream + end, lambda said: b"the end\r\n" in said, ANSWER_WITHIN_S):
         complaints.append("the board did not come to the end")
-    if board.stop() != 0:
+    report = board.stop()
+    if report is None:
         complaints.append("the board failed")
+    elif report[0] != len(stream + end) or not 0 < report[1] < PUSH_WITHIN_CYCLES:
+        complaints.append(f"of {len(stream + end)} bytes {report[0]} came; the longest push took {report[1]} cycles, "
+                          f"expected less than {PUSH_WITHIN_CYCLES}")
 
     understood = board.said.decode("ascii", "replace").split("\r\n")[:-2]
     if understood != lines:
         first = next((i for i, pair in enumerate(zip(understood, lines)) if pair[0] != pair[1]), -1)
         complaints.append(f"{len(understood)} lines for {len(lines)}; the first other one: "
                           f"{understood[first:first + 1]} for {lines[first:first + 1]}")
-    print("\n".join(complaints) or f"{len(stream)} bytes sent, {len(lines)} records understood, none else")
+    print("\n".join(complaints) or f"{len(stream)} bytes sent, {len(lines)} records understood, none else; "
+          f"the longest push took {report[1]} cycles")
     return 1 if complaints else 0
 
 
