@@ -328,6 +328,21 @@ static void packets_that_break_the_rules_are_damaged(void **state)
     }
 }
 
+/* Whatever the CRC's bytes happen to be: lengths or letters, for instance. */
+static void texts_do_not_reach_into_the_crc(void **state)
+{
+    (void)state;
+    for (unsigned value = 0; value < 0x10000; value++) {
+        const uint8_t answer[] = {0x17, (uint8_t)value, (uint8_t)(value >> 8), 2, 'O', 'K', 1, 2, 3, 4, 1};
+        for (size_t size = sizeof answer - 1; size <= sizeof answer; size++) {
+            const message sent = packet_of(answer, size);
+            tapemark_receiver receiver = {0};
+            assert_int_equal(push_message(&receiver, &sent), 0);
+            assert_int_equal(receiver.damaged, 1);
+        }
+    }
+}
+
 static void packets_without_a_payload_are_damaged(void **state)
 {
     (void)state;
@@ -455,6 +470,7 @@ int main(void)
         cmocka_unit_test(both_checks_of_a_sentence_are_held),
         cmocka_unit_test(sentences_of_other_makers_pass_in_silence),
         cmocka_unit_test(packets_that_break_the_rules_are_damaged),
+        cmocka_unit_test(texts_do_not_reach_into_the_crc),
         cmocka_unit_test(packets_without_a_payload_are_damaged),
         cmocka_unit_test(a_silent_line_of_zeros_is_no_damage),
         cmocka_unit_test(appended_fields_are_left_aside),
