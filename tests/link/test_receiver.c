@@ -252,6 +252,25 @@ static void sentences_that_break_the_rules_are_damaged(void **state)
     }
 }
 
+/* After a whole one, whose end still lies in the receiver. */
+static void sentences_that_stop_early_are_damaged(void **state)
+{
+    (void)state;
+    const message whole = sentence_of(good_place);
+    for (size_t length = 4; length < sizeof good_place + 4; length++) {
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_message(&receiver, &whole), 1);
+        unsigned sum = 0;
+        for (size_t i = 1; i <= length; i++)
+            sum ^= whole.bytes[i];
+        char end[8];
+        const int size = snprintf(end, sizeof end, "*%02X\r\n", sum);
+        push_all(&receiver, whole.bytes, length + 1);
+        assert_int_equal(push_all(&receiver, (const uint8_t *)end, (size_t)size), 0);
+        assert_int_equal(receiver.damaged, 1);
+    }
+}
+
 static void numbers_at_the_ends_of_their_ranges_are_taken(void **state)
 {
     (void)state;
@@ -279,14 +298,31 @@ static void both_checks_of_a_sentence_are_held(void **state)
     assert_int_equal(push_message(&receiver, &sent), 0);
     assert_int_equal(receiver.damaged, 2);
 
-    char lower_case[8];
-    snprintf(lower_case, sizeof lower_case, "%.4s", strrchr((const char *)sent.bytes, ',') + 1);
-    for (char *at = lower_case; *at != '\0'; at++)
-        *at = (char)(*at >= 'A' ? *at + 'a' - 'A' : *at);
-    assert_string_not_equal(lower_case, "");
-    sent = sentence_with_crc(good_place, lower_case);
+    /* The right value, in five digits. */
+    char crc[8];
+    snprintf(crc, sizeof crc, "0%.4s", strrchr((const char *)sent.bytes, ',') + 1);
+    sent = sentence_with_crc(good_place, crc);
     assert_int_equal(push_message(&receiver, &sent), 0);
     assert_int_equal(receiver.damaged, 3);
+
+    sent = sentence_with_crc(good_place, crc + 1);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    for (char *at = crc; *at != '\0'; at++)
+        *at = (char)(*at >= 'A' ? *at + 'a' - 'A' : *at);
+    sent = sentence_with_crc(good_place, crc + 1);
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 4);
+}
+
+static void a_line_end_ends_a_sentence(void **state)
+{
+    (void)state;
+    static const char torn[] = "$PTMKP,1,2\r";
+    tapemark_receiver receiver = {0};
+    push_all(&receiver, (const uint8_t *)torn, sizeof torn - 2);
+    assert_int_equal(receiver.damaged, 0);
+    push_all(&receiver, (const uint8_t *)torn + sizeof torn - 2, 1);
+    assert_int_equal(receiver.damaged, 1);
 }
 
 static void sentences_of_other_makers_pass_in_silence(void **state)
@@ -466,7 +502,9 @@ int main(void)
         cmocka_unit_test(no_flag_of_the_upper_byte_makes_a_field_known),
         cmocka_unit_test(a_sentence_made_by_hand_is_taken),
         cmocka_unit_test(sentences_that_break_the_rules_are_damaged),
+        cmocka_unit_test(sentences_that_stop_early_are_damaged),
         cmocka_unit_test(numbers_at_the_ends_of_their_ranges_are_taken),
+        cmocka_unit_test(a_line_end_ends_a_sentence),
         cmocka_unit_test(both_checks_of_a_sentence_are_held),
         cmocka_unit_test(sentences_of_other_makers_pass_in_silence),
         cmocka_unit_test(packets_that_break_the_rules_are_damaged),

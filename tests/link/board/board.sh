@@ -17,7 +17,5 @@ if [ "$lines" -gt 60 ]; then
     exit 1
 fi
 
-sh "$here/build_sketch.sh" "$link" "$core" "$work/packets.elf" -DTAPEMARK_RECEIVER_NO_SENTENCES
-sh "$here/build_sketch.sh" "$link" "$core" "$work/sentences.elf" -DTAPEMARK_RECEIVER_NO_PACKETS
-sh "$here/build_sketch.sh" "$link" "$core" "$work/both.elf"
+sh "$here/build_sketch.sh" "$link" "$core" "$work"
 "$python" "$here/watch_board.py" "$avr_board" "$work/both.elf" "$link/README.md" "$link/vectors.txt"
