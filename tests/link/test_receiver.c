@@ -314,6 +314,24 @@ static void both_checks_of_a_sentence_are_held(void **state)
     assert_int_equal(receiver.damaged, 4);
 }
 
+static void a_checksum_has_two_upper_case_digits(void **state)
+{
+    (void)state;
+    for (int x_mm = 0; x_mm < 256; x_mm++) {
+        char fields[40];
+        snprintf(fields, sizeof fields, "PTMKP,1,2,00,%d,4,", x_mm);
+        const message whole = sentence_of(fields);
+        for (size_t from_end = 3; from_end <= 4; from_end++)
+            for (const char *bad = "/:@Gaf g"; *bad != '\0'; bad++) {
+                message sent = whole;
+                sent.bytes[sent.size - from_end] = (uint8_t)*bad;
+                tapemark_receiver receiver = {0};
+                assert_int_equal(push_message(&receiver, &sent), 0);
+                assert_int_equal(receiver.damaged, 1);
+            }
+    }
+}
+
 static void a_line_end_ends_a_sentence(void **state)
 {
     (void)state;
@@ -379,6 +397,51 @@ static void texts_do_not_reach_into_the_crc(void **state)
     }
 }
 
+/* All their bytes are there, and right, and there should have been more. */
+static void packets_that_end_within_a_block_are_damaged(void **state)
+{
+    (void)state;
+    static const uint8_t device[] = {0x16, 9, 8, 7, 6, 5, 4, 3, 2};
+    message sent = packet_of(device, sizeof device);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(sent.bytes[1], sizeof device + 3);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    sent.bytes[1]++;
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 1);
+}
+
+/* The part that fits is a packet by itself. */
+static void packets_that_are_too_long_are_damaged(void **state)
+{
+    (void)state;
+    const tapemark_record record = longest_record(TAPEMARK_RECORD_COMMAND);
+    message sent = message_of(&record, TAPEMARK_PACKETS);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(sent.bytes[1], TAPEMARK_PAYLOAD_MAX + 1);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    sent.bytes[1]++;
+    sent.bytes[TAPEMARK_PACKET_MAX_BYTES - 1] = 'x';
+    sent.bytes[TAPEMARK_PACKET_MAX_BYTES] = 0;
+    sent.size = TAPEMARK_PACKET_MAX_BYTES + 1;
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 1);
+}
+
+static void a_reset_receiver_has_forgotten_everything(void **state)
+{
+    (void)state;
+    const tapemark_record record = longest_record(TAPEMARK_RECORD_PLACE);
+    for (tapemark_encoding encoding = TAPEMARK_SENTENCES; encoding <= TAPEMARK_PACKETS; encoding++) {
+        const message sent = message_of(&record, encoding);
+        tapemark_receiver receiver = {.damaged = 1, .unknown = 2};
+        assert_int_equal(push_all(&receiver, sent.bytes, sent.size / 2), 0);
+        tapemark_receiver_reset(&receiver);
+        assert_int_equal(push_all(&receiver, sent.bytes + sent.size / 2, sent.size - sent.size / 2), 0);
+        assert_int_equal(receiver.damaged + receiver.unknown, 0);
+    }
+}
+
 static void packets_without_a_payload_are_damaged(void **state)
 {
     (void)state;
@@ -425,7 +488,7 @@ static void new_records_are_counted_as_unknown(void **state)
     const message sentence = sentence_of("PTMKX,1,2,3");
     assert_int_equal(push_message(&receiver, &sentence), 0);
     assert_int_equal(receiver.unknown, 1);
-    static const uint8_t heads[] = {0x10, 0x19, 0x1a, 0x1f, 0x01, 0x26, 0xf6};
+    static const uint8_t heads[] = {0x00, 0x10, 0x19, 0x1a, 0x1f, 0x01, 0x26, 0xf6};
     for (uint16_t i = 0; i < sizeof heads; i++) {
         const uint8_t device[] = {heads[i], 9, 0, 0, 0, 0, 1, 0, 1};
         const message packet = packet_of(device, sizeof device);
@@ -504,11 +567,15 @@ int main(void)
         cmocka_unit_test(sentences_that_break_the_rules_are_damaged),
         cmocka_unit_test(sentences_that_stop_early_are_damaged),
         cmocka_unit_test(numbers_at_the_ends_of_their_ranges_are_taken),
+        cmocka_unit_test(a_checksum_has_two_upper_case_digits),
         cmocka_unit_test(a_line_end_ends_a_sentence),
         cmocka_unit_test(both_checks_of_a_sentence_are_held),
         cmocka_unit_test(sentences_of_other_makers_pass_in_silence),
         cmocka_unit_test(packets_that_break_the_rules_are_damaged),
         cmocka_unit_test(texts_do_not_reach_into_the_crc),
+        cmocka_unit_test(packets_that_end_within_a_block_are_damaged),
+        cmocka_unit_test(packets_that_are_too_long_are_damaged),
+        cmocka_unit_test(a_reset_receiver_has_forgotten_everything),
         cmocka_unit_test(packets_without_a_payload_are_damaged),
         cmocka_unit_test(a_silent_line_of_zeros_is_no_damage),
         cmocka_unit_test(appended_fields_are_left_aside),
