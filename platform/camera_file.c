@@ -1,6 +1,6 @@
 /* Recordings and pictures, played as if a camera gave them. */
 #include "camera_backend.h"
-#include "frame_source.h"
+#include "file_formats.h"
 #include "input_list.h"
 #include "recording.h"
 
@@ -21,6 +21,13 @@ static const double rate_without_times_hz = 30;
  * with: it is played slower. */
 enum { PASSED_OVER_MAX = 100 };
 
+/* A frame that was read, and when it is to be given. */
+typedef struct played_frame {
+    frame image;
+    recorded_frame recorded;
+    int64_t due_ns;
+} played_frame;
+
 typedef struct file_camera {
     camera base;
     input_list inputs;
@@ -36,9 +43,8 @@ typedef struct file_camera {
     /* The frame that comes next was read already, to know when it is due. */
     camera_status ahead;     /* CAMERA_TIMEOUT: not yet read */
     error_text ahead_error;
-    frame ahead_image;
-    recorded_frame ahead_recorded;
-    int64_t due_ns;
+    played_frame next_one;
+    frame_buffer copy;       /* of a frame whose place in the source was taken by the one behind it */
     int64_t period_ns;       /* to the frame before */
     bool source_has_begun;
     int64_t source_first_time_ns;
@@ -91,18 +97,18 @@ static camera_status read_frame(file_camera *self)
     error_text reason;
     times_status known = TIMES_FRAME;
     if (self->times != NULL)
-        known = recording_times_next(self->times, &self->ahead_recorded, &reason);
+        known = recording_times_next(self->times, &self->next_one.recorded, &reason);
     if (known == TIMES_END)
         return CAMERA_END;
     if (known == TIMES_FAILED)
         return fail(self, reason.text);
-    frame_status status = frame_source_next(self->source, &self->ahead_image, &reason);
+    frame_status status = frame_source_next(self->source, &self->next_one.image, &reason);
     if (status == FRAME_FAILED)
         return fail(self, reason.text);
     if (status == FRAME_END)
         return CAMERA_END;
     if (self->times == NULL)
-        self->ahead_recorded = (recorded_frame){self->frame_count, self->ahead_image.time_ns, 0};
+        self->next_one.recorded = (recorded_frame){self->frame_count, self->next_one.image.time_ns, 0};
     return CAMERA_FRAME;
 }
 
@@ -111,7 +117,7 @@ static camera_status read_frame(file_camera *self)
 static int64_t recorded_due_ns(file_camera *self, int64_t last_due_ns)
 {
     const int64_t longest_ns = INT64_C(1) << 56;  /* two years */
-    int64_t time_ns = self->ahead_recorded.time_ns;
+    int64_t time_ns = self->next_one.recorded.time_ns;
     if (!self->source_has_begun) {
         self->source_first_time_ns = time_ns;
         self->source_begin_ns = self->frame_count == 0 ? last_due_ns : last_due_ns + self->period_ns;
@@ -128,25 +134,25 @@ static int64_t recorded_due_ns(file_camera *self, int64_t last_due_ns)
 
 static void find_due_time(file_camera *self)
 {
-    int64_t last_due_ns = self->due_ns;
+    int64_t last_due_ns = self->next_one.due_ns;
     switch (self->pace) {
     case PACE_RECORDED:
-        self->due_ns = recorded_due_ns(self, last_due_ns);
-        if (self->due_ns > last_due_ns)
-            self->period_ns = self->due_ns - last_due_ns;
+        self->next_one.due_ns = recorded_due_ns(self, last_due_ns);
+        if (self->next_one.due_ns > last_due_ns)
+            self->period_ns = self->next_one.due_ns - last_due_ns;
         break;
     case PACE_RATE:
-        self->due_ns = self->frame_count == 0 ? last_due_ns : last_due_ns + self->period_ns;
+        self->next_one.due_ns = self->frame_count == 0 ? last_due_ns : last_due_ns + self->period_ns;
         break;
     case PACE_FREE:
-        self->due_ns = camera_clock_ns();
+        self->next_one.due_ns = camera_clock_ns();
         break;
     }
 }
 
 static void arm_timer(const file_camera *self)
 {
-    int64_t due_ns = self->ahead == CAMERA_FRAME && self->due_ns > 0 ? self->due_ns : 1;
+    int64_t due_ns = self->ahead == CAMERA_FRAME && self->next_one.due_ns > 0 ? self->next_one.due_ns : 1;
     struct itimerspec when = {.it_value = {(time_t)(due_ns / 1000000000), (long)(due_ns % 1000000000)}};
     timerfd_settime(self->timer, TFD_TIMER_ABSTIME, &when, NULL);
 }
@@ -187,14 +193,14 @@ static bool configure(camera *base, const camera_wishes *wishes, error_text *err
     if (self->pace != PACE_RATE)
         self->rate_hz = wishes->rate_hz > 0 ? wishes->rate_hz : rate_without_times_hz;
     self->period_ns = (int64_t)llround(1e9 / self->rate_hz);
-    self->due_ns = camera_clock_ns();
+    self->next_one.due_ns = camera_clock_ns();
     read_ahead(self);
     if (self->ahead == CAMERA_FAILED) {
         *error = self->ahead_error;
         return false;
     }
     if (self->ahead == CAMERA_FRAME) {
-        const frame_layout *layout = &self->ahead_image.layout;
+        const frame_layout *layout = &self->next_one.image.layout;
         base->settings.mode = (camera_mode){layout->format, false, layout->width_px, layout->height_px,
                                             self->pace == PACE_FREE ? 0 : self->rate_hz};
     }
@@ -210,20 +216,36 @@ static bool set_light(camera *base, int32_t exposure_us, double gain, error_text
     return false;
 }
 
-static void pass_over_old(file_camera *self)
+static bool keep_copy(file_camera *self, played_frame *kept, error_text *error)
+{
+    size_t bytes = frame_layout_size_bytes(&self->next_one.image.layout);
+    if (!frame_buffer_resize(&self->copy, bytes, error))
+        return false;
+    *kept = self->next_one;
+    memcpy(self->copy.bytes, kept->image.data, bytes);
+    kept->image.data = self->copy.bytes;
+    return true;
+}
+
+/* Passes over all frames behind which another one is due. That takes reading on, so that the frame to be given may
+ * be one that was kept, and the next one is there already. CAMERA_TIMEOUT when it is the next one. */
+static camera_status find_newest(file_camera *self, played_frame *kept, error_text *error)
 {
     int64_t now_ns = camera_clock_ns();
-    int passed_over = 0;
-    while (self->pace != PACE_FREE && self->ahead == CAMERA_FRAME && self->due_ns + self->period_ns <= now_ns &&
-           passed_over < PASSED_OVER_MAX) {
-        camera_pass_over(&self->base);
-        passed_over++;
+    for (int passed_over = 0; passed_over < PASSED_OVER_MAX; passed_over++) {
+        if (self->pace == PACE_FREE || self->ahead != CAMERA_FRAME ||
+            self->next_one.due_ns + self->period_ns > now_ns)
+            return CAMERA_TIMEOUT;
+        if (!keep_copy(self, kept, error))
+            return CAMERA_FAILED;
         read_ahead(self);
+        if (self->ahead != CAMERA_FRAME || self->next_one.due_ns > now_ns)
+            return CAMERA_FRAME;
+        camera_pass_over(&self->base);
     }
-    if (passed_over == PASSED_OVER_MAX) {
-        self->source_begin_ns += now_ns - self->due_ns;
-        self->due_ns = now_ns;
-    }
+    self->source_begin_ns += now_ns - self->next_one.due_ns;
+    self->next_one.due_ns = now_ns;
+    return CAMERA_TIMEOUT;
 }
 
 static void sleep_until(int64_t time_ns)
@@ -232,31 +254,49 @@ static void sleep_until(int64_t time_ns)
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, NULL);
 }
 
+/* Waits for the next frame to be due, but not beyond the deadline. Signals may end a sleep early. */
+static bool wait_until_due(const file_camera *self, int64_t deadline_ns)
+{
+    int64_t due_ns = self->next_one.due_ns;
+    for (int64_t now_ns = camera_clock_ns(); now_ns < due_ns; now_ns = camera_clock_ns()) {
+        if (now_ns >= deadline_ns)
+            return false;
+        sleep_until(due_ns < deadline_ns ? due_ns : deadline_ns);
+    }
+    return true;
+}
+
+static camera_status hand_out(file_camera *self, const played_frame *given, camera_frame *output)
+{
+    output->image = given->image;
+    output->image.time_ns = self->pace == PACE_FREE ? camera_clock_ns() : given->due_ns;
+    output->exposure_us = given->recorded.exposure_us;
+    camera_count_frame(&self->base, (uint32_t)given->recorded.sequence, output);
+    return CAMERA_FRAME;
+}
+
 static camera_status next(camera *base, int timeout_ms, camera_frame *output, error_text *error)
 {
     file_camera *self = (file_camera *)base;
     int64_t deadline_ns = camera_clock_ns() + (int64_t)timeout_ms * 1000000;
+    played_frame kept;
     if (self->timer < 0) {
         error_text_set(error, "is not set up");
         return CAMERA_FAILED;
     }
-    pass_over_old(self);
+    camera_status status = find_newest(self, &kept, error);
+    if (status == CAMERA_FRAME)
+        return hand_out(self, &kept, output);
+    if (status == CAMERA_FAILED)
+        return status;
     if (self->ahead != CAMERA_FRAME) {
         *error = self->ahead_error;
         return self->ahead;
     }
-    /* Signals may end a sleep early. */
-    for (int64_t now_ns = camera_clock_ns(); now_ns < self->due_ns; now_ns = camera_clock_ns()) {
-        if (now_ns >= deadline_ns)
-            return CAMERA_TIMEOUT;
-        sleep_until(self->due_ns < deadline_ns ? self->due_ns : deadline_ns);
-    }
-    output->image = self->ahead_image;
-    output->image.time_ns = self->pace == PACE_FREE ? camera_clock_ns() : self->due_ns;
-    output->exposure_us = self->ahead_recorded.exposure_us;
-    camera_count_frame(base, (uint32_t)self->ahead_recorded.sequence, output);
+    if (!wait_until_due(self, deadline_ns))
+        return CAMERA_TIMEOUT;
     self->ahead = CAMERA_TIMEOUT;
-    return CAMERA_FRAME;
+    return hand_out(self, &self->next_one, output);
 }
 
 static void release(camera *base)
@@ -276,6 +316,7 @@ static void close_camera(camera *base)
     file_camera *self = (file_camera *)base;
     close_input(self);
     input_list_release(&self->inputs);
+    free(self->copy.bytes);
     if (self->timer >= 0)
         close(self->timer);
     free(self);
