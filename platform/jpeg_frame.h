@@ -4,6 +4,10 @@
 
 #include "opencv_media.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* Zeroed before the first use. */
 typedef struct jpeg_frame {
     gray_picture picture;
@@ -13,5 +17,9 @@ typedef struct jpeg_frame {
 bool jpeg_frame_decode(jpeg_frame *decoder, const uint8_t *bytes, size_t size, const frame_layout *expected);
 
 void jpeg_frame_release(jpeg_frame *decoder);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
