@@ -3,8 +3,8 @@
  * chips, and opening a line says so.
  *
  * A line is named CHIP:LINE[:low][:pull-up|:pull-down]. CHIP is a chip's name (gpiochip0), path (/dev/gpiochip0),
- * label (pinctrl-bcm2835) or number, LINE a line's number or name (GPIO17). With `low` the line counts as on while its
- * level is low.
+ * label (pinctrl-bcm2835) or number, LINE a line's number or name (GPIO17). With `low` the line counts as on while
+ * its level is low.
  */
 #ifndef PLATFORM_GPIO_LINES_H
 #define PLATFORM_GPIO_LINES_H

@@ -7,7 +7,8 @@
  * newest one, lets it replace the one before, and writes it down (with its age) at the last moment. What a serial
  * line is still busy with is known from its rate and from the system.
  *
- * A port that is not there, is unplugged or fails is opened again by itself, at growing intervals.
+ * A port that is not there, is unplugged or fails is opened again by itself, at growing intervals. Only when it has
+ * taken bytes it counts as back, so that one that can be opened and not written to makes no news each time.
  *
  * In a loop: record_sink_wants(), poll(), record_sink_step(); then news, read, ready and send as needed.
  */
@@ -32,7 +33,7 @@ typedef struct record_sink record_sink;
 
 typedef enum record_sink_state {
     RECORD_SINK_OPEN,
-    RECORD_SINK_STALLED,  /* it is there, but takes no bytes; what it was given has become too old and is thrown away */
+    RECORD_SINK_STALLED,  /* it is there, but takes no bytes; what it was given is too old by now and thrown away */
     RECORD_SINK_LOST,     /* not there, refused or unplugged; tried again by itself */
     RECORD_SINK_ENDED     /* whoever read standard output is gone for good */
 } record_sink_state;
@@ -55,7 +56,7 @@ typedef struct record_sink_wait {
  *     pty:PATH              a new pseudo terminal; PATH becomes a link to it
  *     udp:HOST:PORT         a datagram a group; HOST is a number, 192.168.4.1 or [::1], or "localhost"
  * NULL when the name makes no sense. One that makes sense and cannot be opened now gives a sink that is LOST, with
- * the reason as its first news. Writing to a closed pipe must not end the process: SIGPIPE is ignored from here on. */
+ * the reason as its first news. SIGPIPE is ignored from here on, so that no closed pipe ends the program. */
 record_sink *record_sink_open(const char *name, error_text *error);
 
 /* As it was opened. */
@@ -64,8 +65,8 @@ const char *record_sink_name(const record_sink *sink);
 /* What to wait for next. */
 void record_sink_wants(const record_sink *sink, record_sink_wait *wait);
 
-/* Does all that can be done without waiting: goes on with a group, notices what is wrong, opens again. To be called
- * after each poll(), whatever that found. */
+/* Does all that can be done without waiting: goes on with a group, takes in what came back, notices what is wrong,
+ * opens again. To be called after each poll(), whatever that found. */
 void record_sink_step(record_sink *sink);
 
 record_sink_state record_sink_state_of(const record_sink *sink);
@@ -73,7 +74,8 @@ record_sink_state record_sink_state_of(const record_sink *sink);
 /* True once after each change of state, with one line about it, the sink's name included. */
 bool record_sink_news(record_sink *sink, error_text *message);
 
-/* A group that is given now begins to go out at once. */
+/* A group that is given now begins to go out at once. Also true of a LOST sink that has been opened again: whether it
+ * is back shows with the next group. */
 bool record_sink_ready(const record_sink *sink);
 
 /* Gives a group of at most RECORD_GROUP_MAX_BYTES. What is given to a sink that is not ready is lost, and counted.

@@ -20,8 +20,8 @@ typedef enum service_request {
     SERVICE_STOP     /* SIGTERM or SIGINT */
 } service_request;
 
-/* From here on these signals end nothing by themselves. Before any thread is started, so that none gets them, and once
- * a process. NULL on failure. */
+/* From here on these signals end nothing by themselves. Before any thread is started, so that none gets them, and
+ * once a process. NULL on failure. */
 service *service_open(error_text *error);
 
 /* For poll(): readable when service_next_request() would tell something. */
