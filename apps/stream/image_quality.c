@@ -36,7 +36,7 @@ static uint8_t light_of(const sample *drawn)
 {
     uint32_t lighter = 0;
     int level = GRAY_LEVELS - 1;
-    while (level > 0 && (lighter + drawn->levels[level]) * PERCENT <= drawn->pixels)
+    while (drawn->pixels > 0 && level > 0 && (lighter + drawn->levels[level]) * PERCENT <= drawn->pixels)
         lighter += drawn->levels[level--];
     return (uint8_t)level;
 }

@@ -14,6 +14,7 @@ typedef struct image_quality {
     uint8_t sharpness_along_y;
 } image_quality;
 
+/* Pictures of less than 17 px a side are too small to tell anything. */
 image_quality image_quality_measure(const gray_view *view);
 
 /* White paper is so dark that its print cannot stand out of the noise. */

@@ -137,5 +137,8 @@ options_answer options_read(command_line line, stream_settings *settings, error_
         }
         read_options(line, settings, &config, &reason);
     }
-    return settings_check(settings, error) ? OPTIONS_RUN : config != NULL ? OPTIONS_BAD_CONFIG : OPTIONS_WRONG;
+    if (settings_check(settings, &reason))
+        return OPTIONS_RUN;
+    error_text_set(error, "%.100s%s%.290s", config != NULL ? config : "", config != NULL ? ": " : "", reason.text);
+    return config != NULL ? OPTIONS_BAD_CONFIG : OPTIONS_WRONG;
 }
