@@ -1,4 +1,3 @@
-#define _GNU_SOURCE
 #include "stream_host.h"
 
 #include <errno.h>
@@ -171,7 +170,8 @@ bool host_record(stream_host *host, int timeout_ms, tapemark_record *record)
         const ssize_t count = read(host->line, host->bytes, sizeof host->bytes);
         host->taken = 0;
         host->size = count > 0 ? (size_t)count : 0;
-        host->bytes_received += host->size;
+        if (host->on_bytes != NULL)
+            host->on_bytes(host->context, host->bytes, host->size);
         host->record_ns = host_clock_ns();
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR))
             host_sleep_ms(2);

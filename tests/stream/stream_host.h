@@ -22,8 +22,9 @@ typedef struct stream_host {
     tapemark_receiver receiver;
     uint8_t bytes[512];
     size_t size, taken;
-    uint64_t bytes_received;
     int64_t record_ns;       /* when the last record was complete */
+    void (*on_bytes)(void *context, uint8_t *bytes, size_t size);  /* what came, before it is looked at; may be NULL */
+    void *context;
 } stream_host;
 
 /* A terminal, and no program yet. False when the system has none. */
