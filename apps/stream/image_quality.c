@@ -47,7 +47,7 @@ static uint8_t saturation_of(const sample *drawn)
     uint32_t white = 0;
     for (int level = nearly_white; level < GRAY_LEVELS; level++)
         white += drawn->levels[level];
-    return drawn->pixels > 0 ? (uint8_t)((uint64_t)white * PERCENT / drawn->pixels) : 0;
+    return (uint8_t)(drawn->pixels > 0 ? (uint64_t)white * PERCENT / drawn->pixels : 0);
 }
 
 static uint8_t sharpness_of(const uint32_t edges[PERCENT + 1])
