@@ -53,7 +53,7 @@ static void test_a_full_disk_is_told_once(void **state)
     assert_news(sink, "file:/dev/full cannot be written to: No space left");
     assert_int_equal(record_sink_counts_of(sink).records_sent, 0);
     uint64_t lost = record_sink_counts_of(sink).records_lost;
-    assert_true(lost >= 2 && lost < 10);
+    assert_in_range(lost, 2, 9);
     assert_int_equal(record_sink_counts_of(sink).failures, 1);
     record_sink_close(sink);
 }
@@ -131,7 +131,7 @@ static void test_standard_output_never_waits_and_ends_with_its_reader(void **sta
     record_sink_wants(sink, &wait);
     give_stdout_back(saved);
     assert_false((flags & O_NONBLOCK) != 0);
-    assert_true(took_ms < 50);
+    assert_true(took_ms < 1000);
     assert_true(stalled);
     assert_true(back);
     assert_true(ended);
@@ -157,7 +157,7 @@ static void test_standard_output_may_be_a_socket_or_a_file(void **state)
     send_text(sink, "abc", 1);
     size_t count = read_bytes(ends[0], got, sizeof got, 3);
     int64_t begin_ms = now_ms();
-    for (int i = 0; i < 100 && now_ms() - begin_ms < 1000; i++) {
+    for (int i = 0; i < 100 && now_ms() - begin_ms < 3000; i++) {
         record_sink_send(sink, group, sizeof group, 1);
         record_sink_step(sink);
     }
@@ -167,7 +167,7 @@ static void test_standard_output_may_be_a_socket_or_a_file(void **state)
     close(ends[0]);
     close(ends[1]);
     assert_int_equal(count, 3);
-    assert_true(took_ms < 1000);
+    assert_true(took_ms < 3000);
 
     const char *path = own_path("output");
     int file = open(path, O_WRONLY | O_CREAT, 0600);
