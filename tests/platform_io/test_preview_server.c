@@ -273,6 +273,18 @@ static bool is_closed_within(int viewer, int64_t duration_ms)
     return false;
 }
 
+/* What comes without any frame being shown; closes the viewer. */
+static void assert_answer(int viewer, const char *beginning)
+{
+    struct pollfd look = {viewer, POLLIN, 0};
+    assert_int_equal(poll(&look, 1, 3000), 1);
+    ssize_t got = recv(viewer, answer, sizeof answer - 1, 0);
+    assert_true(got > 0);
+    answer[got] = '\0';
+    assert_int_equal(strncmp(answer, beginning, strlen(beginning)), 0);
+    close(viewer);
+}
+
 /* Eight viewers keep others out for five seconds and no longer: seven that do not say what they want, and one that
  * wants a picture where there is none. */
 static void test_viewers_are_bounded_in_number_and_time(void **state)
@@ -286,19 +298,14 @@ static void test_viewers_are_bounded_in_number_and_time(void **state)
         silent[i] = connect_to(server);
     int hopeful = ask(server, "GET /frame.jpg HTTP/1.1\r\n\r\n");
     wait_ms(100);
-    get(server, "", answer);
-    assert_int_equal(strncmp(answer, "HTTP/1.0 503 Too many", 21), 0);
+    int refused = connect_to(server);
+    assert_answer(refused, "HTTP/1.0 503 Too many viewers");
     for (int i = 0; i < SILENT; i++) {
         assert_true(is_closed_within(silent[i], 7000));
         close(silent[i]);
     }
     assert_in_range(now_ms() - begin_ms, 4000, 9000);
-    struct pollfd look = {hopeful, POLLIN, 0};
-    assert_int_equal(poll(&look, 1, 2000), 1);
-    ssize_t got = recv(hopeful, answer, sizeof answer - 1, 0);
-    assert_true(got > 0);
-    assert_int_equal(strncmp(answer, "HTTP/1.0 503 The camera", 23), 0);
-    close(hopeful);
+    assert_answer(hopeful, "HTTP/1.0 503 The camera gives no picture");
     get(server, "GET / HTTP/1.1\r\n\r\n", answer);
     assert_int_equal(strncmp(answer, "HTTP/1.0 200 ", 13), 0);
     preview_server_close(server);
