@@ -237,6 +237,10 @@ static void go_on_with_group(record_sink *sink)
 /* An outdated frame in the port's memory would arrive as if it were a fresh one. */
 static void stall(record_sink *sink)
 {
+    if (!is_group_under_way(sink)) {
+        sink->counts.records_sent -= sink->group_records;
+        sink->counts.records_lost += sink->group_records;
+    }
     abandon_group(sink);
     if (sink->channel->methods->flush != NULL)
         sink->channel->methods->flush(sink->channel);

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -173,6 +174,65 @@ static void test_a_stalled_port_loses_what_has_begun_and_nothing_after(void **st
     unlink(link);
 }
 
+static int waiting_bytes = -1;  /* in the system's memory for the port; -1: what the system says */
+
+int __real_ioctl(int descriptor, unsigned long request, void *argument);
+int __wrap_ioctl(int descriptor, unsigned long request, void *argument);
+
+int __wrap_ioctl(int descriptor, unsigned long request, void *argument)
+{
+    if (request != TIOCOUTQ || waiting_bytes < 0)
+        return __real_ioctl(descriptor, request, argument);
+    *(int *)argument = waiting_bytes;
+    return 0;
+}
+
+static void test_what_the_system_still_has_to_send_is_waited_for(void **state)
+{
+    (void)state;
+    const char *link = own_path("port");
+    int port = terminal_at(link);
+    record_sink *sink = open_serial(link, ":115200");
+    send_text(sink, "slow", 1);
+    waiting_bytes = 200;
+    for (; waiting_bytes > 0; waiting_bytes -= 20) {
+        assert_false(record_sink_ready(sink));
+        assert_true(run_for(sink, 60) < 40);
+    }
+    assert_true(run_until_ready(sink));
+    assert_no_news(sink);
+    assert_int_equal(record_sink_counts_of(sink).records_sent, 1);
+    waiting_bytes = -1;
+    record_sink_close(sink);
+    close(port);
+    unlink(link);
+}
+
+static void test_what_the_system_cannot_send_is_lost(void **state)
+{
+    (void)state;
+    const char *link = own_path("port");
+    int port = terminal_at(link);
+    record_sink *sink = open_serial(link, ":115200");
+    send_text(sink, "gone", 1);
+    assert_true(run_until_ready(sink));
+    send_text(sink, "stuck", 3);
+    waiting_bytes = 200;
+    assert_true(run_until_state(sink, RECORD_SINK_STALLED));
+    assert_news(sink, "takes no bytes");
+    assert_int_equal(record_sink_counts_of(sink).records_sent, 1);
+    assert_int_equal(record_sink_counts_of(sink).records_lost, 3);
+    run_for(sink, 300);
+    assert_int_equal(record_sink_state_of(sink), RECORD_SINK_STALLED);
+    waiting_bytes = 0;
+    assert_true(run_until_state(sink, RECORD_SINK_OPEN));
+    assert_news(sink, "is back");
+    waiting_bytes = -1;
+    record_sink_close(sink);
+    close(port);
+    unlink(link);
+}
+
 static void test_closing_a_stalled_port_takes_no_time(void **state)
 {
     (void)state;
@@ -288,6 +348,8 @@ int main(void)
         cmocka_unit_test(test_a_group_is_taken_when_the_line_is_free),
         cmocka_unit_test(test_an_unplugged_port_comes_back_by_itself),
         cmocka_unit_test(test_a_stalled_port_loses_what_has_begun_and_nothing_after),
+        cmocka_unit_test(test_what_the_system_still_has_to_send_is_waited_for),
+        cmocka_unit_test(test_what_the_system_cannot_send_is_lost),
         cmocka_unit_test(test_closing_a_stalled_port_takes_no_time),
         cmocka_unit_test(test_a_port_that_is_not_there_yet_is_waited_for),
         cmocka_unit_test(test_what_is_no_serial_port_is_named),
