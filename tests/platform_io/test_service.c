@@ -129,8 +129,9 @@ static void exchange_notes(const char *name)
 static void test_notes_reach_a_socket_with_a_file(void **state)
 {
     (void)state;
-    char path[64];
-    snprintf(path, sizeof path, "/tmp/tapemark-notes-%ld", (long)getpid());
+    char path[100];
+    const char *folder = getenv("TMPDIR");
+    snprintf(path, sizeof path, "%s/tapemark-notes-%ld", folder != NULL ? folder : "/tmp", (long)getpid());
     exchange_notes(path);
     unlink(path);
 }
