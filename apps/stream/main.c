@@ -13,8 +13,9 @@
 enum { EXIT_BAD_INPUT = 1, EXIT_BAD_USAGE = 2 };
 
 /* A file opened later must not end up where standard output or standard error should be. */
-static bool fill_descriptors(void)
+static bool fill_descriptors(bool *output_is_open)
 {
+    *output_is_open = fcntl(STDOUT_FILENO, F_GETFD) >= 0;
     for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
         if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
             return false;
@@ -32,8 +33,12 @@ static int written(void)
 /* It is larger than a stack should have to hold. */
 static stream program;
 
-static int run(command_line command, const stream_settings *settings)
+static int run(command_line command, const stream_settings *settings, bool output_is_open)
 {
+    if (!output_is_open && strcmp(settings->output, "-") == 0) {
+        message_tell("standard output", "is closed; --serial and --output name other ways");
+        return EXIT_BAD_INPUT;
+    }
     int status = stream_open(&program, command, settings) ? stream_run(&program) : EXIT_BAD_INPUT;
     stream_close(&program);
     return status;
@@ -47,11 +52,12 @@ int main(int argc, char *argv[])
     signal(SIGPIPE, SIG_IGN);
     /* A disk quota ends a recording, not the program. */
     signal(SIGXFSZ, SIG_IGN);
-    if (!fill_descriptors())
+    bool output_is_open;
+    if (!fill_descriptors(&output_is_open))
         return EXIT_BAD_INPUT;
     switch (options_read(command, &settings, &error)) {
     case OPTIONS_RUN:
-        return run(command, &settings);
+        return run(command, &settings, output_is_open);
     case OPTIONS_LIST:
         listing_write(stdout);
         return written();

@@ -42,7 +42,7 @@ const char options_help[] =
     "  --help, --version    print this text or the version\n"
     "\n"
     "SIGTERM and SIGINT end it. Exit status: 0 it was told to end, or a recording has ended; 1 a file could not be\n"
-    "read, or nobody reads standard output any more; 2 wrong usage.\n";
+    "read, or the output takes no more at the end of a recording or for good; 2 wrong usage.\n";
 
 /* A word of the command line is "--name", "--name=value" or, after the first one, its value. */
 typedef struct option_word {

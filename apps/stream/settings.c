@@ -119,13 +119,21 @@ static bool copy_text(char *target, size_t size, const char *value, error_text *
 
 /* ---- One setter a kind of setting ---------------------------------------------------------------------------- */
 
+/* Whether there is something behind one of the prefixes. */
+static bool is_one_of(const char *value, const char *const *prefixes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        size_t length = strlen(prefixes[i]);
+        if (strncmp(value, prefixes[i], length) == 0 && value[length] != '\0')
+            return true;
+    }
+    return false;
+}
+
 static bool set_camera(stream_settings *settings, const char *value, error_text *error)
 {
     static const char *const kinds[] = {"v4l2:", "libcamera:", "file:", "raw:"};
-    bool known = strcmp(value, "auto") == 0;
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-        known = known || (strncmp(value, kinds[i], strlen(kinds[i])) == 0 && value[strlen(kinds[i])] != '\0');
-    if (!known) {
+    if (strcmp(value, "auto") != 0 && !is_one_of(value, kinds, sizeof kinds / sizeof *kinds)) {
         error_text_set(error, "expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or raw:LAYOUT,PATH[@RATE], "
                               "not '%.80s'", value);
         return false;
@@ -135,6 +143,12 @@ static bool set_camera(stream_settings *settings, const char *value, error_text 
 
 static bool set_output(stream_settings *settings, const char *value, error_text *error)
 {
+    static const char *const kinds[] = {"serial:", "file:", "pty:", "udp:"};
+    if (strcmp(value, "-") != 0 && !is_one_of(value, kinds, sizeof kinds / sizeof *kinds)) {
+        error_text_set(error, "expected -, serial:PORT[:BAUD], file:PATH, pty:PATH or udp:HOST:PORT, not '%.80s'",
+                       value);
+        return false;
+    }
     return copy_text(settings->output, sizeof settings->output, value, error);
 }
 

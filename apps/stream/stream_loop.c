@@ -131,7 +131,9 @@ static int exit_status(stream *self, int64_t now_ns)
         return EXIT_FAILURE;
     if (self->camera.recorded && self->camera.state == CAMERA_WATCH_LOST)
         return EXIT_FAILURE;
-    return has_ended(self, now_ns) ? EXIT_SUCCESS : -1;
+    if (!has_ended(self, now_ns))
+        return -1;
+    return record_sink_state_of(self->line.sink) == RECORD_SINK_OPEN ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int stream_run(stream *self)

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <time.h>
@@ -67,6 +68,8 @@ static void become(const stream_host *host, const char *program, const char *con
     char *words[HOST_ARGUMENTS_MAX + 2] = {strdup(program)};
     for (int i = 0; i < HOST_ARGUMENTS_MAX && arguments[i] != NULL; i++)
         words[i + 1] = with_line(host, arguments[i]);
+    /* A program that outlives a test would find another test's terminal under the name of its own. */
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(said, STDERR_FILENO);
     execv(program, words);
     _exit(127);

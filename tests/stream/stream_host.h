@@ -44,7 +44,8 @@ void host_forget(stream_host *host);
 
 void host_command(stream_host *host, uint16_t number, const char *verb, const char *name, const char *value);
 
-/* The terminal goes, as a USB adapter that is pulled out; and comes back under the same name where `link` is one. */
+/* The terminal goes, as a USB adapter that is pulled out. The program has to know it by a link that is no more: its own
+ * name may be that of another terminal at once. */
 void host_unplug(stream_host *host);
 
 /* Whether the program has said this on standard error, or does within that time. */

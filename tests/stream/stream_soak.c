@@ -1,9 +1,9 @@
 /*
  * Usage: stream_soak PROGRAM WALK.y4m WALK.jsonl [FRAMES]
- * Runs tapemark-stream flat out over a recording that begins again and again, until so many frames went by, and does to
- * it what happens in weeks: the line stalls, the port is pulled out and comes back, bytes are damaged on the way,
- * rubbish comes as commands, and settings are read again. Every record that the receiver takes is held against the
- * truth; memory and descriptors have to stay as they are.
+ * Runs tapemark-stream flat out over a recording that begins again and again, until so many frames went by (100000
+ * unless told), and does to it what happens in weeks, each at least twice: the line stalls, the port is pulled out and
+ * comes back, rubbish comes as commands, settings are read again; and bytes are damaged on the way all the time. Every
+ * record that the receiver takes is held against the truth; memory and descriptors have to stay as they are.
  */
 #include <dirent.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 #include "stream_host.h"
 #include "walk_check.h"
 
-enum { SOON_MS = 10000, FAULT_EVERY_MS = 1000, DAMAGE_EVERY_BYTES = 4000, WARM_UP_FRAMES = 500 };
+enum { SOON_MS = 10000, FAULT_EVERY_MS = 700, HARMS = 4, DAMAGE_EVERY_BYTES = 4000, WARM_UP_FRAMES = 500 };
 
 typedef struct soak {
     stream_host host;
@@ -84,7 +84,6 @@ static void stall(soak *self)
 
 static bool point_link(const soak *self, const char *device)
 {
-    unlink(self->link_path);
     return symlink(device, self->link_path) == 0;
 }
 
@@ -92,6 +91,7 @@ static bool unplug(soak *self)
 {
     stream_host fresh;
     self->unplugs++;
+    unlink(self->link_path);
     host_unplug(&self->host);
     host_sleep_ms(300);
     if (!host_open(&fresh) || !point_link(self, fresh.device_path))
@@ -116,18 +116,18 @@ static void send_rubbish(soak *self)
 
 static bool do_harm(soak *self)
 {
-    switch (self->harms++ % 4) {
+    switch (self->harms++ % HARMS) {
     case 0:
-        stall(self);
-        return true;
-    case 1:
-        return unplug(self);
-    case 2:
-        send_rubbish(self);
-        return true;
-    default:
         self->reloads++;
         return kill(self->host.program, SIGHUP) == 0;
+    case 1:
+        stall(self);
+        return true;
+    case 2:
+        return unplug(self);
+    default:
+        send_rubbish(self);
+        return true;
     }
 }
 
@@ -155,7 +155,7 @@ static bool run(soak *self, uint64_t frames)
 {
     tapemark_record record;
     int64_t next_fault_ns = host_clock_ns() + FAULT_EVERY_MS * INT64_C(1000000);
-    while (self->check.position < frames) {
+    while (self->check.position < frames || self->harms < 2 * HARMS) {
         if (!host_record(&self->host, SOON_MS, &record)) {
             printf("no record came; the program said: %s\n", self->host.said);
             return false;
@@ -165,7 +165,7 @@ static bool run(soak *self, uint64_t frames)
             self->memory_kib = memory_kib(self->host.program);
             self->descriptors = count_descriptors(self->host.program);
         }
-        if (host_clock_ns() >= next_fault_ns) {
+        if (self->memory_kib > 0 && host_clock_ns() >= next_fault_ns) {
             if (!do_harm(self))
                 return false;
             next_fault_ns = host_clock_ns() + FAULT_EVERY_MS * INT64_C(1000000);

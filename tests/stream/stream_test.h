@@ -61,4 +61,16 @@ static inline tapemark_record expect_record(tapemark_record_type type)
     return record;
 }
 
+/* The next FRAME of which this holds; the test fails when it does not come to hold soon. */
+static inline tapemark_record expect_frame(bool (*holds)(const tapemark_frame_record *head), const char *what)
+{
+    for (int i = 0; i < 200; i++) {
+        tapemark_record record = expect_record(TAPEMARK_RECORD_FRAME);
+        if (holds(&record.as.frame))
+            return record;
+    }
+    fail_msg("no frame %s", what);
+    return (tapemark_record){0};
+}
+
 #endif

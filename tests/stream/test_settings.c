@@ -111,6 +111,8 @@ static void wrong_options_are_named(void **state)
     REFUSES("--map: has no value", "--map=");
     REFUSES("--camera: expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or raw:LAYOUT,PATH[@RATE], not "
             "'/dev/video0'", "--camera", "/dev/video0");
+    REFUSES("--output: expected -, serial:PORT[:BAUD], file:PATH, pty:PATH or udp:HOST:PORT, not '/dev/ttyS0'",
+            "--output", "/dev/ttyS0");
     REFUSES("--encoding: expected nmea or cobs, not 'json'", "--encoding", "json");
     REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not '10x10+1'", "--roi", "10x10+1");
     REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not '0x10+1+1'", "--roi", "0x10+1+1");
@@ -135,6 +137,7 @@ static void values_that_are_too_long_are_refused(void **state)
     text[sizeof text - 1] = '\0';
     REFUSES("--map: is longer than 511 characters", "--map", text);
     REFUSES("--serial: is longer than 511 characters", "--serial", text);
+    memcpy(text, "file:", 5);
     REFUSES("--output: is longer than 511 characters", "--output", text);
 }
 

@@ -53,6 +53,11 @@ static void broken_settings_leave_the_old_ones(void **state)
 
 static const char no_map[] = "{\"walls\": 1}";
 
+static bool tells_broken_map(const tapemark_frame_record *head)
+{
+    return (head->flags & TAPEMARK_FRAME_MAP_BROKEN) != 0;
+}
+
 static void broken_map_leaves_the_old_one(void **state)
 {
     (void)state;
@@ -70,13 +75,10 @@ static void broken_map_leaves_the_old_one(void **state)
     write_file(path, no_map);
     assert_int_equal(kill(host.program, SIGHUP), 0);
     assert_true(host_says(&host, path, SOON_MS));
-    tapemark_record record;
-    do {
-        record = expect_record(TAPEMARK_RECORD_FRAME);
-    } while (!(record.as.frame.flags & TAPEMARK_FRAME_MAP_BROKEN));
+    expect_frame(tells_broken_map, "tells of the broken map");
     expect_record(TAPEMARK_RECORD_PLACE);
     assert_int_equal(host_count_said(&host, "\n"), 1);
-    record = expect_record(TAPEMARK_RECORD_STATUS);
+    tapemark_record record = expect_record(TAPEMARK_RECORD_STATUS);
     assert_true(record.as.status.flags & TAPEMARK_STATUS_MAP_BROKEN);
     assert_true(record.as.status.flags & TAPEMARK_STATUS_MAP_LOADED);
     assert_true(record.as.status.errors > 0);
