@@ -1,4 +1,4 @@
-/* A camera that comes back: it is opened again, at growing intervals, when it is gone, fails or gives no more frames. */
+/* A camera that comes back: it is opened again, at growing intervals, when it is gone, fails or gives no frames. */
 #ifndef STREAM_CAMERA_WATCH_H
 #define STREAM_CAMERA_WATCH_H
 
@@ -29,8 +29,8 @@ typedef struct camera_watch {
     error_text message;
 } camera_watch;
 
-/* Begins with a camera, in place of the one before. False, with an error, when it is a recording that cannot be played;
- * a camera that is not there only is lost. */
+/* Begins with a camera, in place of the one before. False, with an error, when it is a recording that cannot be
+ * played; a camera that is not there only is lost. */
 bool camera_watch_begin(camera_watch *watch, const stream_settings *settings, error_text *error);
 
 /* For poll(); -1 while there is nothing to wait for. */

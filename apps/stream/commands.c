@@ -19,13 +19,15 @@ static void say_number(error_text *said, double number, const char *automatic)
 static void get_exposure(const command_target *target, error_text *said)
 {
     const camera *device = target->camera->device;
-    say_number(said, device != NULL ? camera_settings_of(device)->exposure_us : target->settings->exposure_us, "auto");
+    int32_t exposure_us = target->settings->exposure_us;
+    say_number(said, device != NULL ? camera_settings_of(device)->exposure_us : exposure_us, "auto");
 }
 
 static void get_gain(const command_target *target, error_text *said)
 {
     const camera *device = target->camera->device;
-    say_number(said, hundredths * (device != NULL ? camera_settings_of(device)->gain : target->settings->gain), "auto");
+    double gain = device != NULL ? camera_settings_of(device)->gain : target->settings->gain;
+    say_number(said, hundredths * gain, "auto");
 }
 
 /* Where the camera does not tell, the wish. */

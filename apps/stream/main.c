@@ -55,14 +55,14 @@ int main(int argc, char *argv[])
     bool output_is_open;
     if (!fill_descriptors(&output_is_open))
         return EXIT_BAD_INPUT;
-    switch (options_read(command, &settings, &error)) {
+    switch (stream_options_read(command, &settings, &error)) {
     case OPTIONS_RUN:
         return run(command, &settings, output_is_open);
     case OPTIONS_LIST:
         listing_write(stdout);
         return written();
     case OPTIONS_HELP:
-        fputs(options_help, stdout);
+        fputs(stream_options_help, stdout);
         return written();
     case OPTIONS_VERSION:
         printf("tapemark-stream %s\n", tapemark_version());

@@ -1,8 +1,8 @@
 /*
  * The line to the microcontroller: the newest frame, what is said beside it, and the commands that come back.
  *
- * One frame waits at most, as records; it is written down when its first byte can leave, with its age of then. A frame
- * that comes while one waits takes its place. What is said beside frames goes between them.
+ * One frame waits at most, as records; it is written down when its first byte can leave, with its age of then. One
+ * that comes while it waits takes its place. What is said beside frames goes between them.
  */
 #ifndef STREAM_RECORD_LINE_H
 #define STREAM_RECORD_LINE_H

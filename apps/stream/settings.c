@@ -10,7 +10,7 @@
 
 const double rate_unlimited_hz = 10000;
 
-/* ---- Values ------------------------------------------------------------------------------------------------ */
+/* ---- Values -------------------------------------------------------------------------------------------------- */
 
 static bool parse_real(const char *text, double least, double most, double *value, error_text *error)
 {
@@ -134,8 +134,8 @@ static bool set_camera(stream_settings *settings, const char *value, error_text 
 {
     static const char *const kinds[] = {"v4l2:", "libcamera:", "file:", "raw:"};
     if (strcmp(value, "auto") != 0 && !is_one_of(value, kinds, sizeof kinds / sizeof *kinds)) {
-        error_text_set(error, "expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or raw:LAYOUT,PATH[@RATE], "
-                              "not '%.80s'", value);
+        error_text_set(error, "expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or "
+                              "raw:LAYOUT,PATH[@RATE], not '%.80s'", value);
         return false;
     }
     return copy_text(settings->camera, sizeof settings->camera, value, error);

@@ -55,7 +55,7 @@ bool settings_check(const stream_settings *settings, error_text *error);
 
 camera_wishes settings_camera_wishes(const stream_settings *settings);
 
-/* ---- Values that also come over the line ------------------------------------------------------------------- */
+/* ---- Values that also come over the line --------------------------------------------------------------------- */
 
 /* WIDTHxHEIGHT+X+Y, or full. */
 bool settings_parse_roi(const char *text, camera_region *roi, error_text *error);

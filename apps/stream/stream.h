@@ -4,7 +4,7 @@
 
 #include "camera_watch.h"
 #include "map_table.h"
-#include "options.h"
+#include "stream_options.h"
 #include "preview_notes.h"
 #include "record_line.h"
 #include "recording.h"

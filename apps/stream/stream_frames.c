@@ -7,7 +7,7 @@
 
 static const int64_t second_ns = 1000000000;
 
-/* ---- Frames ---------------------------------------------------------------------------------------------------- */
+/* ---- Frames -------------------------------------------------------------------------------------------------- */
 
 static const tapemark_map *map_of(const stream *self)
 {
@@ -46,7 +46,7 @@ static void send_reading(stream *self, const frame_reading *reading, const camer
     record_line_go_on(&self->line, camera_clock_ns());
 }
 
-/* ---- What else is done with it ----------------------------------------------------------------------------------- */
+/* ---- What else is done with it ------------------------------------------------------------------------------- */
 
 /* A recording ends with what is there; the rest goes on. */
 static void end_recording(stream *self, const error_text *reason)
@@ -125,7 +125,7 @@ void stream_tell_loss(stream *self, int64_t now_ns)
     record_line_offer(&self->line);
 }
 
-/* ---- Status ------------------------------------------------------------------------------------------------------ */
+/* ---- Status -------------------------------------------------------------------------------------------------- */
 
 static uint16_t to_u16(int64_t value)
 {

@@ -19,7 +19,7 @@ static const int64_t end_patience_ns = 2000000000;
 
 enum { WAIT_SERVICE, WAIT_LINE, WAIT_CAMERA, WAIT_TRIGGER, WAIT_COUNT };
 
-/* ---- Waiting ----------------------------------------------------------------------------------------------------- */
+/* ---- Waiting ------------------------------------------------------------------------------------------------- */
 
 static int64_t sooner(int64_t a_ns, int64_t b_ns)
 {
@@ -58,7 +58,7 @@ static void wait_for_something(const stream *self)
     ppoll(waits, WAIT_COUNT, &timeout, NULL);
 }
 
-/* ---- What has come ------------------------------------------------------------------------------------------------ */
+/* ---- What has come ------------------------------------------------------------------------------------------- */
 
 static void tell_news(stream *self)
 {
@@ -110,7 +110,7 @@ static void keep_times(stream *self, int64_t now_ns)
     }
 }
 
-/* ---- The end ------------------------------------------------------------------------------------------------------ */
+/* ---- The end ------------------------------------------------------------------------------------------------- */
 
 /* After the last frame of a recording, a last STATUS, and time for what is still to leave. */
 static bool has_ended(stream *self, int64_t now_ns)

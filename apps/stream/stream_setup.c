@@ -4,7 +4,7 @@
 
 #include "messages.h"
 
-/* ---- Maps ------------------------------------------------------------------------------------------------------ */
+/* ---- Maps ---------------------------------------------------------------------------------------------------- */
 
 /* The old map stays when the new one is broken. */
 static bool load_map(stream *self, const char *path)
@@ -37,7 +37,7 @@ static void set_known_ids(stream *self)
         map_table_configure(&self->map, &self->settings.decoder);
 }
 
-/* ---- What can be opened again ---------------------------------------------------------------------------------- */
+/* ---- What can be opened again -------------------------------------------------------------------------------- */
 
 /* False when the name makes no sense. */
 static bool open_line(stream *self, const stream_settings *settings)
@@ -83,7 +83,7 @@ static void end_recording(stream *self)
     self->recording_begun = false;
 }
 
-/* ---- Beginning --------------------------------------------------------------------------------------------------- */
+/* ---- Beginning ----------------------------------------------------------------------------------------------- */
 
 bool stream_open(stream *self, command_line command, const stream_settings *settings)
 {
@@ -106,7 +106,7 @@ bool stream_open(stream *self, command_line command, const stream_settings *sett
     return true;
 }
 
-/* ---- Reloading --------------------------------------------------------------------------------------------------- */
+/* ---- Reloading ----------------------------------------------------------------------------------------------- */
 
 static bool same_camera(const stream_settings *a, const stream_settings *b)
 {
@@ -158,7 +158,7 @@ void stream_reload(stream *self)
     stream_settings fresh;
     error_text reason;
     service_tell_reloading(self->service);
-    if (options_read(self->command, &fresh, &reason) == OPTIONS_RUN) {
+    if (stream_options_read(self->command, &fresh, &reason) == OPTIONS_RUN) {
         adopt(self, &fresh);
     } else {
         message_tell(NULL, reason.text);
@@ -167,7 +167,7 @@ void stream_reload(stream *self)
     service_tell_ready(self->service);
 }
 
-/* ---- Ending ------------------------------------------------------------------------------------------------------ */
+/* ---- Ending -------------------------------------------------------------------------------------------------- */
 
 void stream_close(stream *self)
 {

@@ -25,7 +25,7 @@ void host_sleep_ms(int time_ms)
     nanosleep(&(struct timespec){time_ms / 1000, time_ms % 1000 * 1000000L}, NULL);
 }
 
-/* ---- The terminal ------------------------------------------------------------------------------------------------ */
+/* ---- The terminal -------------------------------------------------------------------------------------------- */
 
 bool host_open(stream_host *host)
 {
@@ -49,7 +49,7 @@ void host_unplug(stream_host *host)
     host->device = host->line = -1;
 }
 
-/* ---- The program ------------------------------------------------------------------------------------------------- */
+/* ---- The program --------------------------------------------------------------------------------------------- */
 
 /* In memory that is never freed: it belongs to the program that takes the place of this one. */
 static char *with_line(const stream_host *host, const char *argument)
@@ -149,7 +149,7 @@ void host_close(stream_host *host)
         close(host->line);
 }
 
-/* ---- Records ----------------------------------------------------------------------------------------------------- */
+/* ---- Records ------------------------------------------------------------------------------------------------- */
 
 static bool next_in_hand(stream_host *host, tapemark_record *record)
 {

@@ -23,14 +23,15 @@ typedef struct stream_host {
     uint8_t bytes[512];
     size_t size, taken;
     int64_t record_ns;       /* when the last record was complete */
-    void (*on_bytes)(void *context, uint8_t *bytes, size_t size);  /* what came, before it is looked at; may be NULL */
+    /* Gets what came before it is looked at; may be NULL. */
+    void (*on_bytes)(void *context, uint8_t *bytes, size_t size);
     void *context;
 } stream_host;
 
 /* A terminal, and no program yet. False when the system has none. */
 bool host_open(stream_host *host);
 
-/* Starts the program with these arguments, up to a NULL. "LINE" anywhere in an argument becomes the terminal's path. */
+/* Starts the program with these arguments, up to a NULL. "LINE" in an argument becomes the terminal's path. */
 bool host_start(stream_host *host, const char *program, const char *const *arguments);
 
 /* The next record that comes within that time, from now on. */
@@ -44,8 +45,8 @@ void host_forget(stream_host *host);
 
 void host_command(stream_host *host, uint16_t number, const char *verb, const char *name, const char *value);
 
-/* The terminal goes, as a USB adapter that is pulled out. The program has to know it by a link that is no more: its own
- * name may be that of another terminal at once. */
+/* The terminal goes, as a USB adapter that is pulled out. The program has to know it by a link that is no more: its
+ * own name may be that of another terminal at once. */
 void host_unplug(stream_host *host);
 
 /* Whether the program has said this on standard error, or does within that time. */

@@ -1,9 +1,9 @@
 /*
  * Usage: stream_soak PROGRAM WALK.y4m WALK.jsonl [FRAMES]
  * Runs tapemark-stream flat out over a recording that begins again and again, until so many frames went by (100000
- * unless told), and does to it what happens in weeks, each at least twice: the line stalls, the port is pulled out and
- * comes back, rubbish comes as commands, settings are read again; and bytes are damaged on the way all the time. Every
- * record that the receiver takes is held against the truth; memory and descriptors have to stay as they are.
+ * unless told), and does to it what happens in weeks, each at least twice: the line stalls, the port is pulled out
+ * and comes back, rubbish comes as commands, settings are read again; and bytes are damaged on the way all the time.
+ * Every record that the receiver takes is held against the truth; memory and descriptors have to stay as they are.
  */
 #include <dirent.h>
 #include <signal.h>
@@ -34,7 +34,7 @@ static uint32_t roll(soak *self)
     return self->dice >> 12;
 }
 
-/* ---- What the program takes ---------------------------------------------------------------------------------------- */
+/* ---- What the program takes ---------------------------------------------------------------------------------- */
 
 static long memory_kib(pid_t program)
 {
@@ -62,7 +62,7 @@ static int count_descriptors(pid_t program)
     return count;
 }
 
-/* ---- Faults -------------------------------------------------------------------------------------------------------- */
+/* ---- Faults -------------------------------------------------------------------------------------------------- */
 
 /* Up to eight bits in a row, which a CRC of 16 bits always notices. */
 static void damage(void *context, uint8_t *bytes, size_t size)
@@ -131,7 +131,7 @@ static bool do_harm(soak *self)
     }
 }
 
-/* ---- The run ------------------------------------------------------------------------------------------------------- */
+/* ---- The run ------------------------------------------------------------------------------------------------- */
 
 static bool begin(soak *self, char **arguments, const truth *walk)
 {
@@ -189,9 +189,9 @@ static bool judge(const soak *self, long memory_after_kib, int descriptors_after
 {
     const long growth_max_kib = 512;
     const walk_check *check = &self->check;
-    printf("%llu frames, %llu of them sent with %llu CMs and %llu TMs; %llu wrong records; %llu incomplete frames for "
-           "%llu damaged bytes; %u stalls, %u unplugged ports, %u times rubbish, %u reloads; memory %ld to %ld KiB, "
-           "descriptors %d to %d\n",
+    printf("%llu frames, %llu of them sent with %llu CMs and %llu TMs; %llu wrong records; %llu incomplete frames "
+           "for %llu damaged bytes; %u stalls, %u unplugged ports, %u times rubbish, %u reloads; "
+           "memory %ld to %ld KiB, descriptors %d to %d\n",
            (unsigned long long)check->position, (unsigned long long)check->frames, (unsigned long long)check->cms,
            (unsigned long long)check->tms, (unsigned long long)check->wrong, (unsigned long long)check->incomplete,
            (unsigned long long)self->damaged_bytes, self->stalls, self->unplugs, self->rubbish, self->reloads,

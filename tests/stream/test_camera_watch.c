@@ -65,7 +65,7 @@ int64_t __wrap_camera_clock_ns(void)
     return fake.now_ns;
 }
 
-/* ---- Helpers ------------------------------------------------------------------------------------------------------ */
+/* ---- Helpers ------------------------------------------------------------------------------------------------- */
 
 static stream_settings settings;
 static camera_watch watch;
@@ -104,7 +104,7 @@ static void expect_news(const char *text)
     assert_false(camera_watch_news(&watch, &message));
 }
 
-/* ---- Tests -------------------------------------------------------------------------------------------------------- */
+/* ---- Tests --------------------------------------------------------------------------------------------------- */
 
 static void frames_are_numbered_with_those_left_out(void **state)
 {

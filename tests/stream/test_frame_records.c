@@ -65,7 +65,7 @@ static uint16_t frame_flags(void)
     return output.records[0].as.frame.flags;
 }
 
-/* ---- Markers ------------------------------------------------------------------------------------------------------ */
+/* ---- Markers ------------------------------------------------------------------------------------------------- */
 
 static void markers_follow_their_frame(void **state)
 {
@@ -166,7 +166,7 @@ static void most_that_can_be_read_can_be_written(void **state)
                                               sizeof bytes) > 0);
 }
 
-/* ---- Places -------------------------------------------------------------------------------------------------------- */
+/* ---- Places -------------------------------------------------------------------------------------------------- */
 
 static const int32_t map_ids[] = {-2, -1, 0, 3};
 static const tapemark_map_cm map_cms[] = {{2.43f, 0.11f, 1, 0, 0, 2}, {2.21f, 0.11f, 1, 0, 0, 1},
@@ -211,7 +211,7 @@ static void tm_against_the_map_places_nothing(void **state)
     assert_int_equal(output.records[2].as.cm.flags, TAPEMARK_CM_IN_TM);
 }
 
-/* ---- Flags --------------------------------------------------------------------------------------------------------- */
+/* ---- Flags --------------------------------------------------------------------------------------------------- */
 
 static void flags_tell_what_the_decoder_met(void **state)
 {
@@ -278,7 +278,7 @@ static void cm_of_an_unread_tm_is_partial(void **state)
     assert_true(output.records[0].as.frame.flags & TAPEMARK_FRAME_PARTIAL);
 }
 
-/* ---- Time, and loss ------------------------------------------------------------------------------------------------ */
+/* ---- Time, and loss ------------------------------------------------------------------------------------------ */
 
 static void stamp_tells_age_and_what_was_left_out(void **state)
 {

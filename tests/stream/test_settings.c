@@ -11,7 +11,7 @@
 #include <cmocka.h>
 
 #include "config_file.h"
-#include "options.h"
+#include "stream_options.h"
 
 enum { WORDS_MAX = 20 };
 
@@ -48,7 +48,7 @@ static options_answer read_words(const char *const *words)
     for (; words[line.count - 1] != NULL; line.count++)
         copies[line.count] = strdup(words[line.count - 1]);
     error.text[0] = '\0';
-    const options_answer answer = options_read(line, &settings, &error);
+    const options_answer answer = stream_options_read(line, &settings, &error);
     for (int i = 0; i < line.count; i++)
         free(copies[i]);
     return answer;
@@ -64,13 +64,14 @@ static void expect_refusal(const char *const *words, const char *text)
 
 #define REFUSES(text, ...) expect_refusal((const char *const[]){__VA_ARGS__, NULL}, text)
 
-/* ---- The command line ---------------------------------------------------------------------------------------------- */
+/* ---- The command line ---------------------------------------------------------------------------------------- */
 
 static void options_set_what_they_name(void **state)
 {
     (void)state;
     assert_int_equal(READ("--camera", "v4l2:/dev/video2", "--serial=/dev/ttyAMA0:115200", "--encoding", "cobs",
-                          "--exposure", "500", "--gain", "2.5", "--rate", "60", "--roi", "640x200+0+100"), OPTIONS_RUN);
+                          "--exposure", "500", "--gain", "2.5", "--rate", "60", "--roi", "640x200+0+100"),
+                     OPTIONS_RUN);
     assert_string_equal(settings.camera, "v4l2:/dev/video2");
     assert_string_equal(settings.output, "serial:/dev/ttyAMA0:115200");
     assert_int_equal(settings.encoding, TAPEMARK_PACKETS);
@@ -141,7 +142,7 @@ static void values_that_are_too_long_are_refused(void **state)
     REFUSES("--output: is longer than 511 characters", "--output", text);
 }
 
-/* ---- The file ------------------------------------------------------------------------------------------------------- */
+/* ---- The file ------------------------------------------------------------------------------------------------ */
 
 static void expect_config(const char *text)
 {

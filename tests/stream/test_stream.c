@@ -2,7 +2,7 @@
  * microcontroller's receiver. */
 #include "stream_test.h"
 
-/* ---- Every record is right --------------------------------------------------------------------------------------- */
+/* ---- Every record is right ----------------------------------------------------------------------------------- */
 
 static walk_check watch_walk(const char *encoding)
 {
@@ -46,7 +46,7 @@ static void packets_are_right(void **state)
     assert_walk_is_right(&check);
 }
 
-/* ---- Too slow, too late, gone -------------------------------------------------------------------------------------- */
+/* ---- Too slow, too late, gone -------------------------------------------------------------------------------- */
 
 /* 9600 baud carry a frame in 0.4 s; frames come every 0.1 s. */
 static void slow_line_gets_new_frames(void **state)

@@ -1,7 +1,7 @@
 /* The whole program: what it is told by signals, files and commands. */
 #include "stream_test.h"
 
-/* ---- Being told to end, and to read again --------------------------------------------------------------------------- */
+/* ---- Being told to end, and to read again -------------------------------------------------------------------- */
 
 static void term_ends_within_a_frame(void **state)
 {
@@ -85,7 +85,7 @@ static void broken_map_leaves_the_old_one(void **state)
     unlink(path);
 }
 
-/* ---- Commands ---------------------------------------------------------------------------------------------------- */
+/* ---- Commands ------------------------------------------------------------------------------------------------ */
 
 static void expect_answer(uint16_t number, const char *result, const char *text)
 {
@@ -168,7 +168,7 @@ static void region_is_looked_at_alone(void **state)
     assert_true(cms > 30);
 }
 
-/* ---- What else is done with frames --------------------------------------------------------------------------------- */
+/* ---- What else is done with frames --------------------------------------------------------------------------- */
 
 /* What was recorded tells the same when it is played again. */
 static void recording_tells_the_same(void **state)

@@ -6,8 +6,8 @@
 static void complain(walk_check *check, const char *what, uint16_t seq, long number)
 {
     if (check->wrong++ == 0)
-        snprintf(check->complaint, sizeof check->complaint, "%s %ld with seq %u, after seq %u at frame %llu", what, number,
-                 seq, check->seq, (unsigned long long)(check->position + WALK_FRAMES - 1) % WALK_FRAMES);
+        snprintf(check->complaint, sizeof check->complaint, "%s %ld with seq %u, after seq %u at frame %llu", what,
+                 number, seq, check->seq, (unsigned long long)(check->position + WALK_FRAMES - 1) % WALK_FRAMES);
 }
 
 static void check_frame(walk_check *check, const tapemark_frame_record *head)

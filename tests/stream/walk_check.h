@@ -1,5 +1,5 @@
-/* Whether records are those of data/walk.y4m, played over and over, and nothing else. Records may be missing: how many
- * is for the caller to judge. */
+/* Whether records are those of data/walk.y4m, played over and over, and nothing else. Records may be missing: how
+ * many is for the caller to judge. */
 #ifndef WALK_CHECK_H
 #define WALK_CHECK_H
 

@@ -1,6 +1,6 @@
 /* The command line: settings by name, and the configuration file that they go before. */
-#ifndef STREAM_OPTIONS_H
-#define STREAM_OPTIONS_H
+#ifndef STREAM_STREAM_OPTIONS_H
+#define STREAM_STREAM_OPTIONS_H
 
 #include "settings.h"
 
@@ -19,9 +19,9 @@ typedef struct command_line {
     char *const *words;
 } command_line;
 
-options_answer options_read(command_line line, stream_settings *settings, error_text *error);
+options_answer stream_options_read(command_line line, stream_settings *settings, error_text *error);
 
 /* The text of --help. */
-extern const char options_help[];
+extern const char stream_options_help[];
 
 #endif

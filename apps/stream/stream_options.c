@@ -1,16 +1,16 @@
-#include "options.h"
+#include "stream_options.h"
 
 #include <stdio.h>
 #include <string.h>
 
 #include "config_file.h"
 
-const char options_help[] =
+const char stream_options_help[] =
     "usage: tapemark-stream [OPTION...]\n"
     "Reads a tape through a camera and sends what is in each frame to a microcontroller.\n"
     "\n"
-    "  --camera NAME        auto (default), v4l2:/dev/video0, libcamera:0, file:PATH[@RATE] or raw:LAYOUT,PATH[@RATE];\n"
-    "                       RATE is in frames a second, or max. --list tells what there is\n"
+    "  --camera NAME        auto (default), v4l2:/dev/video0, libcamera:0, file:PATH[@RATE] or\n"
+    "                       raw:LAYOUT,PATH[@RATE]; RATE is in frames a second, or max. --list tells what there is\n"
     "  --serial PORT[:BAUD] where records go: a serial port, at 115200 baud unless told\n"
     "  --output NAME        or - (standard output, default), file:PATH, pty:PATH, udp:HOST:PORT, serial:PORT[:BAUD]\n"
     "  --encoding KIND      nmea (default), sentences to read; or cobs, packets of a third of their length\n"
@@ -37,7 +37,8 @@ const char options_help[] =
     "  --max-id N           the largest id in use, without its sign\n"
     "  --confidence-min C   leaves out code markers read with less confidence, 0 to 1\n"
     "\n"
-    "  --config FILE        settings of the same names, a line each: name = value; SIGHUP reads it and the map again\n"
+    "  --config FILE        settings of the same names, a line each: name = value; SIGHUP reads it and the map\n"
+    "                       again\n"
     "  --list               tells what cameras, serial ports and GPIO chips there are\n"
     "  --help, --version    print this text or the version\n"
     "\n"
@@ -109,8 +110,9 @@ static options_answer read_options(command_line line, stream_settings *settings,
         if (answer != OPTIONS_RUN && option.value == NULL)
             return answer;
         if (!takes_value(option.name)) {
-            error_text_set(error, answer != OPTIONS_RUN ? "--%s takes no value"
-                                                        : "there is no option '--%s'; --help lists them", option.name);
+            bool known = answer != OPTIONS_RUN;
+            error_text_set(error, known ? "--%s takes no value" : "there is no option '--%s'; --help lists them",
+                           option.name);
             return OPTIONS_WRONG;
         }
         if (!apply(&option, settings, error))
@@ -121,7 +123,7 @@ static options_answer read_options(command_line line, stream_settings *settings,
     return OPTIONS_RUN;
 }
 
-options_answer options_read(command_line line, stream_settings *settings, error_text *error)
+options_answer stream_options_read(command_line line, stream_settings *settings, error_text *error)
 {
     const char *config = NULL;
     error_text reason;
