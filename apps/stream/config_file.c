@@ -6,7 +6,7 @@
 
 #include "byte_reader.h"
 
-enum { FILE_MAX_BYTES = 64 * 1024, NAMES_MAX = 32 };
+enum { FILE_MAX_BYTES = 1024 * 1024, NAMES_MAX = 32 };
 
 typedef struct config_reading {
     stream_settings *settings;
