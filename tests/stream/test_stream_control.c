@@ -1,6 +1,9 @@
 /* The whole program: what it is told by signals, files and commands. */
 #include "stream_test.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 /* ---- Being told to end, and to read again -------------------------------------------------------------------- */
 
 static void term_ends_within_a_frame(void **state)
@@ -207,6 +210,36 @@ static void recording_on_a_full_disk_ends(void **state)
     assert_int_equal(host_count_said(&host, "\n"), 1);
 }
 
+/* A picture from the preview's page, whose port is the one that the program tells. */
+static void preview_shows_a_picture(void **state)
+{
+    (void)state;
+    static const char request[] = "GET /frame.jpg HTTP/1.1\r\nHost: localhost\r\n\r\n", told[] = "http://127.0.0.1:";
+    uint8_t answer[65536];
+    size_t size = 0;
+    start(ARGUMENTS("--camera", WALK "@10", "--repeat", "yes", "--serial", "LINE:921600", "--preview", "0"));
+    assert_true(host_says(&host, told, SOON_MS));
+    expect_record(TAPEMARK_RECORD_FRAME);
+    const struct sockaddr_in address = {
+        .sin_family = AF_INET,
+        .sin_port = htons((uint16_t)atoi(strstr(host.said, told) + sizeof told - 1)),
+        .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    const int connection = socket(AF_INET, SOCK_STREAM, 0);
+    assert_int_equal(connect(connection, (const struct sockaddr *)&address, sizeof address), 0);
+    assert_int_equal(write(connection, request, sizeof request - 1), sizeof request - 1);
+    for (ssize_t count = 1; count > 0 && size < sizeof answer; size += (size_t)(count > 0 ? count : 0))
+        count = read(connection, answer + size, sizeof answer - size);
+    close(connection);
+    assert_memory_equal(answer, "HTTP/1.", 7);
+    assert_memory_equal(answer + 8, " 200 ", 5);
+    const uint8_t *picture = memmem(answer, size, "\r\n\r\n", 4);
+    assert_non_null(picture);
+    assert_memory_equal(picture + 4, "\xff\xd8\xff", 3);
+    assert_true(size > 5000);
+    /* Frames go on meanwhile. */
+    expect_record(TAPEMARK_RECORD_FRAME);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -216,6 +249,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(commands_are_answered, open_host, close_host),
         cmocka_unit_test_setup_teardown(encoding_changes_behind_the_answer, open_host, close_host),
         cmocka_unit_test_setup_teardown(region_is_looked_at_alone, open_host, close_host),
+        cmocka_unit_test_setup_teardown(preview_shows_a_picture, open_host, close_host),
         cmocka_unit_test_setup_teardown(recording_tells_the_same, open_host, close_host),
         cmocka_unit_test_setup_teardown(recording_on_a_full_disk_ends, open_host, close_host),
     };
