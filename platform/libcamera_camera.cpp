@@ -82,11 +82,13 @@ bool libcamera_camera::open(const std::string &wanted, error_text *error)
         return false;
     }
     const auto cameras = manager_->cameras();
-    const bool is_number = !wanted.empty() && wanted.size() < 6 && wanted.find_first_not_of("0123456789") == std::string::npos;
+    const bool is_number = !wanted.empty() && wanted.size() < 6 &&
+                           wanted.find_first_not_of("0123456789") == std::string::npos;
     const size_t number = is_number ? std::stoul(wanted) : cameras.size();
     auto found = number < cameras.size() ? cameras[number] : manager_->get(wanted);
     if (!found) {
-        error_text_set(error, "libcamera sees %zu cameras, and '%.80s' is none of them", cameras.size(), wanted.c_str());
+        error_text_set(error, "libcamera sees %zu cameras, and '%.80s' is none of them", cameras.size(),
+                       wanted.c_str());
         return false;
     }
     if (found->acquire() != 0) {
@@ -242,6 +244,10 @@ bool libcamera_camera::set_light(int32_t exposure_us, double gain, error_text *e
     camera_wishes wishes = {};
     wishes.exposure_us = exposure_us;
     wishes.gain = gain;
+    if (!running_) {
+        error_text_set(error, "is not set up");
+        return false;
+    }
     if (!check_light(wishes, error))
         return false;
     std::lock_guard<std::mutex> lock(guard_);
@@ -335,7 +341,7 @@ bool libcamera_camera::hand_out(libcamera::Request *request, camera_frame *outpu
     output->image.data = buffers_.bytes(index);
     output->image.time_ns = camera_normal_time_ns(start_ns) + int64_t{output->exposure_us} * 500;
 
-    bool whole = used >= std::min(layout_.stride_bytes * static_cast<size_t>(layout_.height_px), buffers_.size(index));
+    bool whole = used >= layout_.stride_bytes * static_cast<size_t>(layout_.height_px);
     if (settings.mode.jpeg) {
         whole = used <= buffers_.size(index) && jpeg_frame_decode(&jpeg_, output->image.data, used, &layout_);
         output->image.data = jpeg_.picture.pixels;

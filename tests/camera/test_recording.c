@@ -73,8 +73,9 @@ static camera *play(const char *path, error_text *error)
 static void raw_recordings_are_byte_for_byte(void **state)
 {
     static const frame_layout layouts[] = {
-        {PIXEL_GREY, WIDTH, HEIGHT, WIDTH + 8}, {PIXEL_Y10P, WIDTH, HEIGHT, 64},    {PIXEL_YUYV, WIDTH, HEIGHT, 2 * WIDTH},
-        {PIXEL_NV12, WIDTH, HEIGHT, WIDTH},     {PIXEL_YU12, WIDTH, HEIGHT, WIDTH}, {PIXEL_SRGGB10, WIDTH, HEIGHT, 96},
+        {PIXEL_GREY, WIDTH, HEIGHT, WIDTH + 8}, {PIXEL_Y10P, WIDTH, HEIGHT, 64},
+        {PIXEL_YUYV, WIDTH, HEIGHT, 2 * WIDTH}, {PIXEL_NV12, WIDTH, HEIGHT, WIDTH},
+        {PIXEL_YU12, WIDTH, HEIGHT, WIDTH},     {PIXEL_SRGGB10, WIDTH, HEIGHT, 96},
     };
     (void)state;
     for (size_t k = 0; k < COUNT_OF(layouts); k++) {
@@ -208,7 +209,8 @@ static void a_device_that_is_full_ends_it(void **state)
 
 static void another_size_ends_it(void **state)
 {
-    static const frame_layout first = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH}, second = {PIXEL_GREY, HEIGHT, WIDTH, HEIGHT};
+    static const frame_layout first = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    static const frame_layout second = {PIXEL_GREY, HEIGHT, WIDTH, HEIGHT};
     error_text error;
     (void)state;
     recording *file = recording_open(in_folder("size.raw"), 0, &error);

@@ -47,7 +47,8 @@ static bool reads_tape(const loop_check *check, const gray_view *view, uint32_t 
     tapemark_cm cms[16];
     tapemark_result result = {.cms = cms, .cm_capacity = 16};
     tapemark_image image = {view->pixels, view->width_px, view->height_px, view->stride_bytes};
-    tapemark_decode(&image, NULL, check->workspace, tapemark_workspace_bytes(view->width_px, view->height_px), &result);
+    tapemark_decode(&image, NULL, check->workspace, tapemark_workspace_bytes(view->width_px, view->height_px),
+                    &result);
     bool right = result.cm_count == PICTURE_CMS;
     for (size_t i = 0; i < result.cm_count; i++)
         right = right && cms[i].id >= picture_first_id(number) && cms[i].id < picture_first_id(number) + PICTURE_CMS;
@@ -157,8 +158,9 @@ static bool run_checks(loop_check *check, const char *name, const camera_wishes 
     camera_counts counts = camera_counts_of(check->device);
     bool fresh = check_slow_reader(check, &missed, &following);
     printf("%s %dx%d: %u frames compared, %u wrong, %u not read, %u repeated by vivid, %llu dropped, %llu damaged, "
-           "%.1f a second, oldest %.1f ms; a slow reader misses %u, %u of them behind those it gets\n", wishes->format,
-           wishes->width_px, wishes->height_px, check->compared, check->wrong, check->unread, check->repeated,
+           "%.1f a second, oldest %.1f ms; a slow reader misses %u, %u of them behind those it gets\n",
+           wishes->format, wishes->width_px, wishes->height_px, check->compared, check->wrong, check->unread,
+           check->repeated,
            (unsigned long long)counts.dropped, (unsigned long long)counts.damaged, frames / seconds,
            (double)check->oldest_ns * 1e-6, missed + following, following);
     return fresh && check->wrong == 0 && check->unread == 0 && counts.damaged == 0;
@@ -241,7 +243,8 @@ static bool check_unbind(char **arguments)
     int64_t start_ns = camera_clock_ns();
     while (status == CAMERA_FRAME)
         status = camera_next(device, 3000, &got, &error);
-    printf("unbind: status %d after %.1f ms: %s\n", (int)status, (double)(camera_clock_ns() - start_ns) * 1e-6, error.text);
+    printf("unbind: status %d after %.1f ms: %s\n", (int)status, (double)(camera_clock_ns() - start_ns) * 1e-6,
+           error.text);
     camera_close(device);
     return status == CAMERA_GONE;
 }
@@ -283,7 +286,8 @@ static bool check_unplug(const char *name, char **format_and_size)
     }
     bool back = device != NULL && camera_next(device, 3000, &got, &error) == CAMERA_FRAME;
     camera_close(device);
-    printf("%s: %u frames, then: %s; %s after %d tries\n", name, before, error.text, back ? "back" : "not back", tries);
+    printf("%s: %u frames, then: %s; %s after %d tries\n", name, before, error.text, back ? "back" : "not back",
+           tries);
     return back;
 }
 

@@ -1,4 +1,5 @@
-/* What the virtual USB camera is to its host: descriptors, and the answers to control requests (USB video class 1.0). */
+/* What the virtual USB camera is to its host: descriptors, and the answers to control requests (USB video class
+ * 1.0). */
 #ifndef VM_UVC_DEVICE_H
 #define VM_UVC_DEVICE_H
 
