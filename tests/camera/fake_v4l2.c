@@ -331,7 +331,7 @@ static int get_buffer(struct v4l2_buffer *buffer)
 
 static int show_buffer(struct v4l2_buffer *buffer)
 {
-    buffer->length = fake.picture.sizeimage;
+    buffer->length = fake.buffer_bytes != 0 ? fake.buffer_bytes : fake.picture.sizeimage;
     buffer->m.offset = buffer->index * FAKE_BUFFER_BYTES;
     return 0;
 }

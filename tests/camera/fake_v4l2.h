@@ -34,6 +34,7 @@ typedef struct fake_camera {
     struct v4l2_frmsize_stepwise steps;   /* instead of sizes, where max_width is not 0 */
     uint32_t capabilities;
     uint32_t buffers;                     /* that it gives */
+    uint32_t buffer_bytes;                /* of each; 0: as many as a frame */
     bool crops;
     uint32_t field;
     uint32_t extra_stride;

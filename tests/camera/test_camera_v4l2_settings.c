@@ -91,6 +91,10 @@ static void answers_that_cannot_be_are_refused(void **state)
     expect_refusal("v4l2:/dev/video0", &none, "pictures of 3071");
     fake.answer = (struct v4l2_pix_format){.bytesperline = 1u << 30};
     expect_refusal("v4l2:/dev/video0", &none, "does not fit into");
+    fake.answer = (struct v4l2_pix_format){0};
+    fake.buffer_bytes = 64 * 48 - 1;
+    expect_refusal("v4l2:/dev/video0", &none, "smaller than a frame");
+    fake.buffer_bytes = 0;
     fake.modes = &no_list;
     fake.answer = (struct v4l2_pix_format){.width = 1u << 31, .height = 1};
     expect_refusal("v4l2:/dev/video0", &none, "impossible size");
