@@ -6,6 +6,7 @@
 #include <libcamera/logging.h>
 #include <libcamera/property_ids.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <poll.h>
@@ -216,14 +217,26 @@ bool libcamera_camera::start(const camera_wishes &wishes, error_text *error)
     return true;
 }
 
-/* No request completes once the camera has stopped. */
+/* libcamera 0.0.3 ends the whole program when a camera is stopped that was unplugged, and libcamera has not heard so
+ * yet. When no frames come any more that may be why: then it gets the time to hear. */
+bool libcamera_camera::is_gone_for_sure()
+{
+    constexpr std::chrono::seconds time_to_hear(3);
+    std::unique_lock<std::mutex> lock(guard_);
+    if (silent_)
+        changed_.wait_for(lock, time_to_hear, [this] { return gone_ || latest_ != nullptr; });
+    return gone_;
+}
+
+/* No request completes once the camera has stopped, or is gone. */
 void libcamera_camera::stop()
 {
     if (held_ != nullptr)
         buffers_.end_reading(held_->cookie());
-    if (running_)
+    if (running_ && !is_gone_for_sure())
         camera_->stop();
     running_ = false;
+    silent_ = false;
     held_ = nullptr;
     latest_ = nullptr;
     requests_.clear();
@@ -295,6 +308,7 @@ void libcamera_camera::completed(libcamera::Request *request)
         queue(latest_);
     }
     latest_ = request;
+    changed_.notify_one();
     raise_event();
 }
 
@@ -303,6 +317,7 @@ void libcamera_camera::disconnected()
 {
     std::lock_guard<std::mutex> lock(guard_);
     gone_ = true;
+    changed_.notify_one();
     raise_event();
 }
 
@@ -366,6 +381,7 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
     for (;;) {
         bool gone;
         libcamera::Request *request = take_latest(&gone);
+        silent_ = silent_ && request == nullptr;
         if (request != nullptr && hand_out(request, output))
             return CAMERA_FRAME;
         if (gone) {
@@ -374,8 +390,10 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
         }
         const int left_ms = camera_left_ms(deadline_ns);
         pollfd waiting = {event_, POLLIN, 0};
-        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0)
+        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0) {
+            silent_ = timeout_ms > 0;
             return CAMERA_TIMEOUT;
+        }
     }
 }
 
