@@ -69,8 +69,9 @@ void camera_list(void (*tell)(void *context, const camera_description *descripti
  * NULL on failure. */
 camera *camera_open(const char *name, error_text *error);
 
-/* Sets the camera up and starts it; again at any time. A wish that cannot be met is an error that tells what
- * there is, and leaves a camera that was running stopped. */
+/* Sets the camera up and starts it; again at any time, which takes back the frame that is out. A wish that cannot be
+ * met is an error that tells what there is, and leaves a camera that was running stopped. A recording is played as it
+ * is: of all wishes only the rate counts, and only where nothing else tells it. */
 bool camera_configure(camera *device, const camera_wishes *wishes, error_text *error);
 
 /* Changes exposure and gain of a running camera, without missing a frame; 0 leaves it to the camera. What is out of

@@ -46,7 +46,8 @@ void camera_pass_over(camera *device);
 void camera_restart_numbers(camera *device);
 
 /* A device's time as camera_clock_ns() counts: times ahead of now are of CLOCK_BOOTTIME, which runs ahead by the time
- * the machine has slept. What lies neither way within the last ten seconds is no time of this frame; then it is now. */
+ * the machine has slept. What lies neither way within the last ten seconds is no time of this frame: then it is
+ * now. */
 int64_t camera_normal_time_ns(int64_t device_time_ns);
 
 /* Milliseconds left until deadline_ns, rounded up; 0 when it has passed. */

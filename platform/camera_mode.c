@@ -130,8 +130,9 @@ static void tell_modes(const camera_mode *modes, size_t count, const camera_wish
     size_t used = 0;
     for (size_t i = 0; i < count && used < sizeof offered; i++) {
         const camera_mode *mode = &modes[i];
-        bool repeated = i > 0 && mode->width_px == modes[i - 1].width_px && mode->height_px == modes[i - 1].height_px &&
-                        strcmp(camera_mode_format(mode), camera_mode_format(&modes[i - 1])) == 0;
+        const camera_mode *last = i > 0 ? &modes[i - 1] : NULL;
+        bool repeated = last != NULL && mode->width_px == last->width_px && mode->height_px == last->height_px &&
+                        mode->format == last->format && mode->jpeg == last->jpeg;
         if (!repeated)
             used += (size_t)snprintf(offered + used, sizeof offered - used, " %s:%dx%d", camera_mode_format(mode),
                                      mode->width_px, mode->height_px);
@@ -139,8 +140,9 @@ static void tell_modes(const camera_mode *modes, size_t count, const camera_wish
     if (count == 0)
         error_text_set(error, "offers no pixel format that can be read");
     else if (wishes->width_px != 0)
-        error_text_set(error, "does not offer %s:%dx%d; it has%s", wishes->format != NULL ? wishes->format : "any format",
-                       wishes->width_px, wishes->height_px, offered);
+        error_text_set(error, "does not offer %s:%dx%d; it has%s",
+                       wishes->format != NULL ? wishes->format : "any format", wishes->width_px, wishes->height_px,
+                       offered);
     else
         error_text_set(error, "does not offer %s; it has%s", wishes->format, offered);
 }

@@ -2,37 +2,26 @@
 #include "camera_backend.h"
 #include "jpeg_frame.h"
 #include "v4l2_device.h"
+#include "v4l2_stream.h"
 
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 enum {
-    BUFFERS_WANTED = 6,  /* one is out, and drivers keep up to two for themselves */
-    BUFFERS_NEEDED = 3,
-    BUFFERS_MAX = 16,
     FAILURES_MAX = 8,    /* of the kind that may pass, in a row, before the camera counts as broken */
     DEVICES_MAX = 64
 };
-
-typedef struct mapped_buffer {
-    void *bytes;
-    size_t size;
-} mapped_buffer;
 
 typedef struct v4l2_camera {
     camera base;
     v4l2_device device;
     v4l2_picture picture;
-    mapped_buffer buffers[BUFFERS_MAX];
-    uint32_t buffer_count;
-    uint32_t with_driver;     /* buffers that the driver may fill, or has filled */
-    uint32_t had_to_fill;     /* of those, the ones that it had since we looked last */
+    v4l2_stream stream;
+    uint32_t had_to_fill;     /* buffers that the driver had since we looked last */
     int held;                 /* the buffer that is out; -1: none */
-    bool streaming;
     int failures;             /* in a row */
     int64_t last_stamp_ns;
     uint32_t last_sequence;
@@ -40,106 +29,7 @@ typedef struct v4l2_camera {
     jpeg_frame jpeg;
 } v4l2_camera;
 
-/* ---- Streaming on and off ------------------------------------------------------------------------------- */
-
-static struct v4l2_buffer buffer_of(uint32_t index)
-{
-    return (struct v4l2_buffer){
-        .index = index, .type = V4L2_BUF_TYPE_VIDEO_CAPTURE, .memory = V4L2_MEMORY_MMAP};
-}
-
-static int request_buffers(v4l2_camera *self, uint32_t *count)
-{
-    struct v4l2_requestbuffers request = {
-        .count = *count, .type = V4L2_BUF_TYPE_VIDEO_CAPTURE, .memory = V4L2_MEMORY_MMAP};
-    int failure = v4l2_call(self->device.descriptor, VIDIOC_REQBUFS, &request);
-    *count = request.count;
-    return failure;
-}
-
-static void stop(v4l2_camera *self)
-{
-    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    uint32_t none = 0;
-    if (self->streaming)
-        v4l2_call(self->device.descriptor, VIDIOC_STREAMOFF, &type);
-    for (uint32_t i = 0; i < self->buffer_count; i++)
-        munmap(self->buffers[i].bytes, self->buffers[i].size);
-    request_buffers(self, &none);
-    self->streaming = false;
-    self->buffer_count = 0;
-    self->with_driver = 0;
-    self->held = -1;
-}
-
-static int give_to_driver(v4l2_camera *self, uint32_t index)
-{
-    struct v4l2_buffer buffer = buffer_of(index);
-    int failure = v4l2_call(self->device.descriptor, VIDIOC_QBUF, &buffer);
-    if (failure == 0)
-        self->with_driver++;
-    return failure;
-}
-
-static bool map_buffer(v4l2_camera *self, uint32_t index, error_text *error)
-{
-    struct v4l2_buffer buffer = buffer_of(index);
-    int failure = v4l2_call(self->device.descriptor, VIDIOC_QUERYBUF, &buffer);
-    size_t frame_bytes = self->base.settings.mode.jpeg ? 1 : frame_layout_size_bytes(&self->picture.layout);
-    if (failure != 0 || buffer.length < frame_bytes) {
-        error_text_set(error, "gives no buffers to read from: %s",
-                       failure != 0 ? strerror(failure) : "they are smaller than a frame");
-        return false;
-    }
-    void *bytes = mmap(NULL, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, self->device.descriptor,
-                       (off_t)buffer.m.offset);
-    if (bytes == MAP_FAILED) {
-        error_text_set(error, "does not share its buffers: %s", strerror(errno));
-        return false;
-    }
-    self->buffers[index] = (mapped_buffer){bytes, buffer.length};
-    self->buffer_count = index + 1;
-    failure = give_to_driver(self, index);
-    if (failure != 0)
-        error_text_set(error, "does not take its buffers: %s", strerror(failure));
-    return failure == 0;
-}
-
-static bool map_buffers(v4l2_camera *self, error_text *error)
-{
-    uint32_t count = BUFFERS_WANTED;
-    int failure = request_buffers(self, &count);
-    if (failure == EBUSY) {
-        error_text_set(error, "is used by another program");
-        return false;
-    }
-    if (failure != 0 || count < BUFFERS_NEEDED) {
-        error_text_set(error, "has no buffers to share: %s",
-                       failure != 0 ? strerror(failure) : "fewer than are needed");
-        return false;
-    }
-    for (uint32_t i = 0; i < count && i < BUFFERS_MAX; i++)
-        if (!map_buffer(self, i, error))
-            return false;
-    return true;
-}
-
-static bool start(v4l2_camera *self, error_text *error)
-{
-    int type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
-    int failure = v4l2_call(self->device.descriptor, VIDIOC_STREAMON, &type);
-    if (failure == ENOSPC)
-        error_text_set(error, "does not start: its USB bus has no bandwidth left; choose a smaller size or MJPEG");
-    else if (failure != 0)
-        error_text_set(error, "does not start: %s", strerror(failure));
-    self->streaming = failure == 0;
-    self->had_to_fill = self->with_driver;
-    self->failures = 0;
-    self->last_stamp_ns = 0;
-    self->shortest_way_ns = INT64_MAX;
-    camera_restart_numbers(&self->base);
-    return self->streaming;
-}
+/* ---- Setting up ------------------------------------------------------------------------------------------ */
 
 static bool set_up(v4l2_camera *self, const camera_wishes *wishes, error_text *error)
 {
@@ -170,19 +60,37 @@ static bool set_up(v4l2_camera *self, const camera_wishes *wishes, error_text *e
     return v4l2_device_set_light(device, mode.width_px, &settings->exposure_us, &settings->gain, error);
 }
 
+static bool start(v4l2_camera *self, error_text *error)
+{
+    size_t frame_bytes = self->base.settings.mode.jpeg ? 1 : frame_layout_size_bytes(&self->picture.layout);
+    if (!v4l2_stream_start(&self->stream, self->device.descriptor, frame_bytes, error))
+        return false;
+    self->had_to_fill = self->stream.with_driver;
+    self->failures = 0;
+    self->last_stamp_ns = 0;
+    self->shortest_way_ns = INT64_MAX;
+    camera_restart_numbers(&self->base);
+    return true;
+}
+
 static bool configure(camera *base, const camera_wishes *wishes, error_text *error)
 {
     v4l2_camera *self = (v4l2_camera *)base;
-    stop(self);
-    if (set_up(self, wishes, error) && map_buffers(self, error) && start(self, error))
+    v4l2_stream_stop(&self->stream);
+    self->held = -1;
+    if (set_up(self, wishes, error) && start(self, error))
         return true;
-    stop(self);
+    v4l2_stream_stop(&self->stream);
     return false;
 }
 
 static bool set_light(camera *base, int32_t exposure_us, double gain, error_text *error)
 {
     v4l2_camera *self = (v4l2_camera *)base;
+    if (!self->stream.running) {
+        error_text_set(error, "is not set up");
+        return false;
+    }
     if (!v4l2_device_set_light(&self->device, base->settings.mode.width_px, &exposure_us, &gain, error))
         return false;
     base->settings.exposure_us = exposure_us;
@@ -221,7 +129,7 @@ static bool is_whole(const v4l2_camera *self, const struct v4l2_buffer *buffer)
     if (buffer->flags & V4L2_BUF_FLAG_ERROR)
         return false;
     if (self->base.settings.mode.jpeg)
-        return buffer->bytesused > 0 && buffer->bytesused <= self->buffers[buffer->index].size;
+        return buffer->bytesused > 0 && buffer->bytesused <= self->stream.buffers[buffer->index].size;
     return buffer->bytesused >= frame_layout_size_bytes(&self->picture.layout);
 }
 
@@ -245,21 +153,19 @@ static bool is_repeated(const v4l2_camera *self, const struct v4l2_buffer *buffe
 /* CAMERA_FRAME: the driver has given back a buffer, whatever is in it; CAMERA_TIMEOUT: it has none. */
 static camera_status take_buffer(v4l2_camera *self, struct v4l2_buffer *buffer, error_text *error)
 {
-    *buffer = buffer_of(0);
-    int failure = v4l2_call(self->device.descriptor, VIDIOC_DQBUF, buffer);
+    int failure = v4l2_stream_take(&self->stream, buffer);
     if (failure == EAGAIN)
         return CAMERA_TIMEOUT;
     if (failure == EIO) {
         self->base.counts.damaged++;
         return bear_failure(self, error);
     }
-    if (failure != 0)
-        return explain_failure(self, failure, error);
-    if (buffer->index >= self->buffer_count || self->with_driver == 0) {
+    if (failure == EBADSLT) {
         error_text_set(error, "gives back buffer %u, which it was not given", buffer->index);
         return CAMERA_FAILED;
     }
-    self->with_driver--;
+    if (failure != 0)
+        return explain_failure(self, failure, error);
     self->failures = 0;
     return CAMERA_FRAME;
 }
@@ -267,7 +173,7 @@ static camera_status take_buffer(v4l2_camera *self, struct v4l2_buffer *buffer, 
 static camera_status pass_over(v4l2_camera *self, uint32_t index, error_text *error)
 {
     camera_pass_over(&self->base);
-    int failure = give_to_driver(self, index);
+    int failure = v4l2_stream_give(&self->stream, index);
     return failure == 0 ? CAMERA_TIMEOUT : explain_failure(self, failure, error);
 }
 
@@ -280,7 +186,7 @@ static camera_status take_newest(v4l2_camera *self, struct v4l2_buffer *newest, 
     uint32_t taken = 0;
     camera_status status = CAMERA_FRAME;
     /* The bound is for drivers that fill buffers faster than we can look. */
-    while (taken < 2 * BUFFERS_MAX && (status = take_buffer(self, &buffer, error)) == CAMERA_FRAME) {
+    while (taken < 2 * V4L2_STREAM_BUFFERS_MAX && (status = take_buffer(self, &buffer, error)) == CAMERA_FRAME) {
         bool whole = is_whole(self, &buffer) && !is_repeated(self, &buffer);
         uint32_t unwanted = whole ? newest->index : buffer.index;
         taken++;
@@ -333,7 +239,7 @@ static camera_status hand_out(v4l2_camera *self, const struct v4l2_buffer *buffe
                               error_text *error)
 {
     const frame_layout *layout = &self->picture.layout;
-    const uint8_t *bytes = self->buffers[buffer->index].bytes;
+    const uint8_t *bytes = self->stream.buffers[buffer->index].bytes;
     self->last_stamp_ns = stamp_of(buffer);
     self->last_sequence = buffer->sequence;
     output->exposure_us = self->base.settings.exposure_us;
@@ -342,7 +248,7 @@ static camera_status hand_out(v4l2_camera *self, const struct v4l2_buffer *buffe
 
     if (self->base.settings.mode.jpeg) {
         bool decoded = jpeg_frame_decode(&self->jpeg, bytes, buffer->bytesused, layout);
-        int failure = give_to_driver(self, buffer->index);
+        int failure = v4l2_stream_give(&self->stream, buffer->index);
         self->held = -1;
         output->image.data = self->jpeg.picture.pixels;
         if (failure != 0)
@@ -396,12 +302,12 @@ static camera_status next(camera *base, int timeout_ms, camera_frame *output, er
     bool just_asked = true;
     camera_status status;
 
-    if (!self->streaming) {
+    if (!self->stream.running) {
         error_text_set(error, "is not set up");
         return CAMERA_FAILED;
     }
     do {
-        struct v4l2_buffer buffer = buffer_of(0);
+        struct v4l2_buffer buffer = {0};
         bool starved;
         status = take_newest(self, &buffer, &starved, error);
         if (status == CAMERA_FRAME) {
@@ -412,8 +318,8 @@ static camera_status next(camera *base, int timeout_ms, camera_frame *output, er
                 status = hand_out(self, &buffer, output, error);
         }
         just_asked = false;
-        self->had_to_fill = self->with_driver;
-        if (status == CAMERA_TIMEOUT && self->with_driver == 0) {
+        self->had_to_fill = self->stream.with_driver;
+        if (status == CAMERA_TIMEOUT && self->stream.with_driver == 0) {
             error_text_set(error, "does not take its buffers back");
             return CAMERA_FAILED;
         }
@@ -428,20 +334,20 @@ static void release(camera *base)
 {
     v4l2_camera *self = (v4l2_camera *)base;
     if (self->held >= 0)
-        give_to_driver(self, (uint32_t)self->held);
+        v4l2_stream_give(&self->stream, (uint32_t)self->held);
     self->held = -1;
 }
 
 static int descriptor(const camera *base)
 {
     const v4l2_camera *self = (const v4l2_camera *)base;
-    return self->streaming ? self->device.descriptor : -1;
+    return self->stream.running ? self->device.descriptor : -1;
 }
 
 static void close_camera(camera *base)
 {
     v4l2_camera *self = (v4l2_camera *)base;
-    stop(self);
+    v4l2_stream_stop(&self->stream);
     v4l2_device_close(&self->device);
     jpeg_frame_release(&self->jpeg);
     free(self);

@@ -6,6 +6,7 @@
 #include <libcamera/logging.h>
 #include <libcamera/property_ids.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <poll.h>
@@ -82,11 +83,13 @@ bool libcamera_camera::open(const std::string &wanted, error_text *error)
         return false;
     }
     const auto cameras = manager_->cameras();
-    const bool is_number = !wanted.empty() && wanted.size() < 6 && wanted.find_first_not_of("0123456789") == std::string::npos;
+    const bool is_number = !wanted.empty() && wanted.size() < 6 &&
+                           wanted.find_first_not_of("0123456789") == std::string::npos;
     const size_t number = is_number ? std::stoul(wanted) : cameras.size();
     auto found = number < cameras.size() ? cameras[number] : manager_->get(wanted);
     if (!found) {
-        error_text_set(error, "libcamera sees %zu cameras, and '%.80s' is none of them", cameras.size(), wanted.c_str());
+        error_text_set(error, "libcamera sees %zu cameras, and '%.80s' is none of them", cameras.size(),
+                       wanted.c_str());
         return false;
     }
     if (found->acquire() != 0) {
@@ -214,14 +217,26 @@ bool libcamera_camera::start(const camera_wishes &wishes, error_text *error)
     return true;
 }
 
-/* No request completes once the camera has stopped. */
+/* libcamera 0.0.3 ends the whole program when a camera is stopped that was unplugged, and libcamera has not heard so
+ * yet. When no frames come any more that may be why: then it gets the time to hear. */
+bool libcamera_camera::is_gone_for_sure()
+{
+    constexpr std::chrono::seconds time_to_hear(3);
+    std::unique_lock<std::mutex> lock(guard_);
+    if (silent_)
+        changed_.wait_for(lock, time_to_hear, [this] { return gone_ || latest_ != nullptr; });
+    return gone_;
+}
+
+/* No request completes once the camera has stopped, or is gone. */
 void libcamera_camera::stop()
 {
     if (held_ != nullptr)
         buffers_.end_reading(held_->cookie());
-    if (running_)
+    if (running_ && !is_gone_for_sure())
         camera_->stop();
     running_ = false;
+    silent_ = false;
     held_ = nullptr;
     latest_ = nullptr;
     requests_.clear();
@@ -242,6 +257,10 @@ bool libcamera_camera::set_light(int32_t exposure_us, double gain, error_text *e
     camera_wishes wishes = {};
     wishes.exposure_us = exposure_us;
     wishes.gain = gain;
+    if (!running_) {
+        error_text_set(error, "is not set up");
+        return false;
+    }
     if (!check_light(wishes, error))
         return false;
     std::lock_guard<std::mutex> lock(guard_);
@@ -289,6 +308,7 @@ void libcamera_camera::completed(libcamera::Request *request)
         queue(latest_);
     }
     latest_ = request;
+    changed_.notify_one();
     raise_event();
 }
 
@@ -297,6 +317,7 @@ void libcamera_camera::disconnected()
 {
     std::lock_guard<std::mutex> lock(guard_);
     gone_ = true;
+    changed_.notify_one();
     raise_event();
 }
 
@@ -335,7 +356,7 @@ bool libcamera_camera::hand_out(libcamera::Request *request, camera_frame *outpu
     output->image.data = buffers_.bytes(index);
     output->image.time_ns = camera_normal_time_ns(start_ns) + int64_t{output->exposure_us} * 500;
 
-    bool whole = used >= std::min(layout_.stride_bytes * static_cast<size_t>(layout_.height_px), buffers_.size(index));
+    bool whole = used >= layout_.stride_bytes * static_cast<size_t>(layout_.height_px);
     if (settings.mode.jpeg) {
         whole = used <= buffers_.size(index) && jpeg_frame_decode(&jpeg_, output->image.data, used, &layout_);
         output->image.data = jpeg_.picture.pixels;
@@ -360,6 +381,7 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
     for (;;) {
         bool gone;
         libcamera::Request *request = take_latest(&gone);
+        silent_ = silent_ && request == nullptr;
         if (request != nullptr && hand_out(request, output))
             return CAMERA_FRAME;
         if (gone) {
@@ -368,8 +390,10 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
         }
         const int left_ms = camera_left_ms(deadline_ns);
         pollfd waiting = {event_, POLLIN, 0};
-        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0)
+        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0) {
+            silent_ = timeout_ms > 0;
             return CAMERA_TIMEOUT;
+        }
     }
 }
 

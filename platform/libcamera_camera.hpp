@@ -7,6 +7,7 @@
 #include "libcamera_buffers.hpp"
 #include "libcamera_versions.hpp"
 
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -35,6 +36,7 @@ private:
     bool make_requests(error_text *error);
     bool add_region(const camera_region &region, libcamera::ControlList &list, error_text *error);
     bool start(const camera_wishes &wishes, error_text *error);
+    bool is_gone_for_sure();
     void stop();
     void queue(libcamera::Request *request);
     void completed(libcamera::Request *request);
@@ -53,6 +55,7 @@ private:
     libcamera::Request *held_ = nullptr;
     int event_;  /* readable while a request waits, and once the camera is gone */
     bool running_ = false;
+    bool silent_ = false;  /* no frame came when one was waited for last */
 
     std::mutex guard_;  /* of all below, which libcamera's thread uses as well */
     libcamera::Request *latest_ = nullptr;
@@ -60,6 +63,7 @@ private:
     uint32_t damaged_ = 0;
     libcamera::ControlList changes_{libcamera::controls::controls};
     bool gone_ = false;
+    std::condition_variable changed_;  /* latest_ or gone_ */
 };
 
 #endif

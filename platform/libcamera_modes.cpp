@@ -48,7 +48,8 @@ void add_size(libcamera_modes &list, const coding &how, libcamera::StreamRole ro
 {
     if (size.width < 1 || size.width > FRAME_SIDE_MAX_PX || size.height < 1 || size.height > FRAME_SIDE_MAX_PX)
         return;
-    list.modes.push_back({how.format, how.jpeg, static_cast<int32_t>(size.width), static_cast<int32_t>(size.height), 0});
+    list.modes.push_back({how.format, how.jpeg, static_cast<int32_t>(size.width),
+                          static_cast<int32_t>(size.height), 0});
     list.formats.push_back(how.name);
     list.roles.push_back(role);
 }

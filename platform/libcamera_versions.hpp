@@ -1,8 +1,7 @@
 /*
  * libcamera changes its interface with each 0.x. What differs between those that we build with stands here; what
  * could be written so that all take it (initializer lists for roles, auto for planes and strings) stands where it is
- * used. It was compiled with 0.0.3 (Debian 12), 0.3.2, 0.4.0 and 0.7.1,
- * and ran with 0.0.3.
+ * used. It was compiled with 0.0.3 (Debian 12), 0.3.2, 0.4.0 and 0.7.1, and ran with 0.0.3.
  */
 #ifndef PLATFORM_LIBCAMERA_VERSIONS_HPP
 #define PLATFORM_LIBCAMERA_VERSIONS_HPP
@@ -10,7 +9,6 @@
 #include <libcamera/libcamera.h>
 #include <libcamera/version.h>
 
-#include <algorithm>
 #include <cstdint>
 
 #define LIBCAMERA_IS_AT_LEAST(major, minor) \

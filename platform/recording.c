@@ -95,22 +95,19 @@ recording *recording_open(const char *path, double rate_hz, error_text *error)
     return file;
 }
 
-/* What could not be cut off (of a device, say) is only a frame more than the times tell of. */
+/* Takes back what was written of a frame of which not all could be. Where nothing can be cut off (of a device, say)
+ * there is only more of it than the times tell of. */
 static void cut_to_whole(const written_file *file)
 {
     if (ftruncate(file->descriptor, file->whole_bytes) == 0)
         lseek(file->descriptor, file->whole_bytes, SEEK_SET);
 }
 
-static bool append(written_file *file, const void *bytes, size_t size)
+static void end_with_failure(recording *file, int failure, error_text *error)
 {
-    if (!write_all(file->descriptor, bytes, size)) {
-        int failure = errno;
-        cut_to_whole(file);
-        errno = failure;
-        return false;
-    }
-    return true;
+    error_text_set(error, "the recording ends here: %s", strerror(failure));
+    cut_to_whole(&file->frames);
+    cut_to_whole(&file->times);
 }
 
 static bool write_heads(recording *file, error_text *error)
@@ -120,17 +117,17 @@ static bool write_heads(recording *file, error_text *error)
     int length = snprintf(text, sizeof text, "# tapemark times 1 %s:%dx%d:%zu\n",
                           pixel_format_describe(layout->format)->name, layout->width_px, layout->height_px,
                           layout->stride_bytes);
-    bool written = append(&file->times, text, (size_t)length);
-    file->times.whole_bytes = length;
+    bool written = write_all(file->times.descriptor, text, (size_t)length);
+    file->times.whole_bytes = written ? length : 0;
     if (written && file->y4m) {
         long rate_mhz = file->rate_hz > 0 ? lround(file->rate_hz * 1000) : 30000;
         length = snprintf(text, sizeof text, "YUV4MPEG2 W%d H%d F%ld:1000 Ip A1:1 Cmono\n", layout->width_px,
                           layout->height_px, rate_mhz);
-        written = append(&file->frames, text, (size_t)length);
-        file->frames.whole_bytes = length;
+        written = write_all(file->frames.descriptor, text, (size_t)length);
+        file->frames.whole_bytes = written ? length : 0;
     }
     if (!written)
-        error_text_set(error, "cannot be recorded to: %s", strerror(errno));
+        end_with_failure(file, errno, error);
     return written;
 }
 
@@ -185,10 +182,9 @@ static bool write_frame(recording *file, const camera_frame *input, error_text *
         return false;
     int length = snprintf(line, sizeof line, "%llu %lld %d\n", (unsigned long long)input->image.sequence,
                           (long long)input->image.time_ns, input->exposure_us);
-    bool written = append(&file->frames, bytes, size) && append(&file->times, line, (size_t)length);
-    if (!written) {
-        error_text_set(error, "the recording ends here: %s", strerror(errno));
-        cut_to_whole(&file->frames);
+    if (!write_all(file->frames.descriptor, bytes, size) ||
+        !write_all(file->times.descriptor, line, (size_t)length)) {
+        end_with_failure(file, errno, error);
         return false;
     }
     file->frames.whole_bytes += (off_t)size;

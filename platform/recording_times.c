@@ -116,8 +116,8 @@ times_status recording_times_next(recording_times *times, recorded_frame *output
     }
     bool ascends = parse_frame(line, output) && (!times->any || output->sequence > times->last_sequence);
     if (!ascends) {
-        error_text_set(error, "line %lu of its .times file is not a sequence number that ascends, a time in ns and an "
-                       "exposure in us: '%.40s'", times->line_number, line);
+        error_text_set(error, "line %lu of its .times file is not a sequence number that ascends, a time in ns and "
+                       "an exposure in us: '%.40s'", times->line_number, line);
         return TIMES_FAILED;
     }
     times->any = true;

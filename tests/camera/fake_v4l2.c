@@ -34,7 +34,7 @@ typedef struct buffer_queue {
     int count;
 } buffer_queue;
 
-static const fake_mode usual_mode = {V4L2_PIX_FMT_GREY, 64, 48, 30};
+static const fake_mode usual_mode = {V4L2_PIX_FMT_GREY, 64, 48, 1};
 static int device_descriptor = -1;
 static bool unplugged;
 static unsigned long failing_request;
@@ -226,6 +226,11 @@ static int set_format(struct v4l2_format *format)
     if (planar)
         picture->sizeimage += picture->sizeimage / 2;
     picture->field = fake.field;
+    picture->width = fake.answer.width != 0 ? fake.answer.width : picture->width;
+    picture->height = fake.answer.height != 0 ? fake.answer.height : picture->height;
+    picture->pixelformat = fake.answer.pixelformat != 0 ? fake.answer.pixelformat : picture->pixelformat;
+    picture->bytesperline = fake.answer.bytesperline != 0 ? fake.answer.bytesperline : picture->bytesperline;
+    picture->sizeimage = fake.answer.sizeimage != 0 ? fake.answer.sizeimage : picture->sizeimage;
     fake.picture = *picture;
     return 0;
 }
@@ -326,7 +331,7 @@ static int get_buffer(struct v4l2_buffer *buffer)
 
 static int show_buffer(struct v4l2_buffer *buffer)
 {
-    buffer->length = fake.picture.sizeimage;
+    buffer->length = fake.buffer_bytes != 0 ? fake.buffer_bytes : fake.picture.sizeimage;
     buffer->m.offset = buffer->index * FAKE_BUFFER_BYTES;
     return 0;
 }

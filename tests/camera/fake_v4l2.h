@@ -1,7 +1,7 @@
 /*
- * A Video4Linux camera without kernel: /dev/video0 as seen by programs that are linked with fake_v4l2.c, whose open(),
- * ioctl(), mmap(), munmap(), poll() and close() come first. Tests set what it offers, let it take pictures, and let
- * it fail.
+ * A Video4Linux camera without kernel: /dev/video0 as seen by programs that are linked with fake_v4l2.c, whose
+ * open(), ioctl(), mmap(), munmap(), poll() and close() come first. Tests set what it offers, let it take pictures,
+ * and let it fail.
  */
 #ifndef FAKE_V4L2_H
 #define FAKE_V4L2_H
@@ -34,9 +34,11 @@ typedef struct fake_camera {
     struct v4l2_frmsize_stepwise steps;   /* instead of sizes, where max_width is not 0 */
     uint32_t capabilities;
     uint32_t buffers;                     /* that it gives */
+    uint32_t buffer_bytes;                /* of each; 0: as many as a frame */
     bool crops;
     uint32_t field;
     uint32_t extra_stride;
+    struct v4l2_pix_format answer;        /* to S_FMT, in those fields that are not 0 */
     fake_control controls[FAKE_CONTROLS];
     size_t control_count;
 
@@ -67,7 +69,8 @@ typedef struct fake_camera {
 
 extern fake_camera fake;
 
-/* A camera of 64 x 48 px in GREY at 30 frames a second, that shows /dev/video0 and does all it is asked. */
+/* A camera of 64 x 48 px in GREY, that shows as /dev/video0 and does all it is asked. Its rate is one frame a second,
+ * so that no frame seems old because the machine is busy. */
 void fake_reset(void);
 
 /* It takes a number of pictures; those that find no buffer are lost. */

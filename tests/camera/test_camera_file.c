@@ -101,25 +101,35 @@ static int remove_folder(void **state)
     return system(command);
 }
 
+/* Plays to the end, on a machine that may be too busy to take all frames: those that come are right, and come when
+ * they are due. Returns how many there were, those passed over among them. */
+static unsigned play_to_the_end(player *p, int64_t period_ns, const uint8_t *values)
+{
+    camera_status status;
+    uint64_t wanted = 0;
+    int64_t first_ns = 0;
+    while ((status = next(p)) == CAMERA_FRAME) {
+        uint64_t number = p->got.image.sequence;
+        assert_int_equal(number, wanted + p->got.dropped);
+        assert_int_equal(p->got.image.data[0], values != NULL ? values[number] : number);
+        assert_true(camera_clock_ns() >= p->got.image.time_ns);
+        first_ns = wanted == 0 ? p->got.image.time_ns - (int64_t)number * period_ns : first_ns;
+        assert_int_equal(p->got.image.time_ns - first_ns, (int64_t)number * period_ns);
+        wanted = number + 1;
+    }
+    assert_int_equal(status, CAMERA_END);
+    assert_int_equal(next(p), CAMERA_END);
+    return (unsigned)wanted;
+}
+
 static void frames_come_at_their_pace(void **state)
 {
     (void)state;
     write_y4m("a.y4m", 50, 6);
     player p = play("file:", "a.y4m");
     assert_int_equal(camera_settings_of(p.device)->mode.width_px, WIDTH);
-    int64_t first_ns = 0;
-    for (int i = 0; i < 6; i++) {
-        assert_int_equal(next(&p), CAMERA_FRAME);
-        assert_int_equal(p.got.image.data[0], i);
-        assert_int_equal(p.got.image.sequence, i);
-        assert_int_equal(p.got.dropped, 0);
-        first_ns = i == 0 ? p.got.image.time_ns : first_ns;
-        assert_int_equal(p.got.image.time_ns - first_ns, i * INT64_C(20000000));
-        assert_true(camera_clock_ns() >= p.got.image.time_ns);
-    }
+    assert_int_equal(play_to_the_end(&p, 20000000, NULL), 6);
     assert_true(camera_clock_ns() - p.start_ns >= INT64_C(95000000));
-    assert_int_equal(next(&p), CAMERA_END);
-    assert_int_equal(next(&p), CAMERA_END);
     camera_close(p.device);
 }
 
@@ -128,10 +138,8 @@ static void a_rate_takes_the_place_of_the_recorded_one(void **state)
     (void)state;
     write_y4m("a.y4m", 1, 4);
     player p = play("file:", "a.y4m@100");
-    for (int i = 0; i < 4; i++)
-        assert_int_equal(next(&p), CAMERA_FRAME);
-    int64_t took_ns = camera_clock_ns() - p.start_ns;
-    assert_in_range(took_ns, 29000000, 900000000);
+    assert_int_equal(play_to_the_end(&p, 10000000, NULL), 4);
+    assert_in_range(camera_clock_ns() - p.start_ns, 29000000, 2500000000);
     camera_close(p.device);
 }
 
@@ -154,18 +162,19 @@ static void flat_out_nothing_is_waited_for_or_left_out(void **state)
 static void who_is_slow_gets_the_newest_frame(void **state)
 {
     (void)state;
-    write_y4m("a.y4m", 100, 100);
+    const int64_t period_ns = 4000000;
+    write_y4m("a.y4m", 250, 250);
     player p = play("file:", "a.y4m");
     assert_int_equal(next(&p), CAMERA_FRAME);
-    sleep_ms(205);
+    uint64_t first = p.got.image.sequence;
+    sleep_ms(105);
+    int64_t asked_ns = camera_clock_ns();
     assert_int_equal(next(&p), CAMERA_FRAME);
-    assert_in_range(p.got.image.sequence, 20, 60);
+    assert_true(p.got.image.sequence >= 25);
     assert_int_equal(p.got.image.data[0], p.got.image.sequence);
-    assert_int_equal(p.got.dropped, p.got.image.sequence - 1);
-    int64_t age_ns = camera_clock_ns() - p.got.image.time_ns;
-    /* Two frame times, and what a busy machine adds. */
-    assert_in_range(age_ns, 0, 200000000);
-    assert_int_equal(camera_counts_of(p.device).dropped, p.got.dropped);
+    assert_int_equal(p.got.dropped, p.got.image.sequence - first - 1);
+    assert_true(asked_ns - p.got.image.time_ns < 2 * period_ns);
+    assert_int_equal(camera_counts_of(p.device).dropped, first + p.got.dropped);
     camera_close(p.device);
 }
 
@@ -174,14 +183,14 @@ static void the_newest_frame_stays_until_the_next_one(void **state)
 {
     (void)state;
     write_raw("a.raw", 4);
-    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n0 0 0\n1 10000000 0\n2 20000000 0\n3 600000000 0\n");
+    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n0 0 0\n1 10000000 0\n2 20000000 0\n3 1000000000 0\n");
     player p = play("file:", "a.raw");
     sleep_ms(100);
     assert_int_equal(next(&p), CAMERA_FRAME);
     assert_int_equal(p.got.image.sequence, 2);
     assert_int_equal(p.got.image.data[0], 2);
     assert_int_equal(camera_next(p.device, 0, &p.got, &p.error), CAMERA_TIMEOUT);
-    sleep_ms(700);
+    sleep_ms(1000);
     assert_int_equal(next(&p), CAMERA_FRAME);
     assert_int_equal(p.got.image.data[0], 3);
     assert_int_equal(p.got.dropped, 0);
@@ -207,7 +216,7 @@ static void a_frame_that_is_not_due_times_out(void **state)
 static void poll_tells_when_a_frame_is_due(void **state)
 {
     (void)state;
-    write_y4m("a.y4m", 20, 3);
+    write_y4m("a.y4m", 4, 3);
     player p = play("file:", "a.y4m");
     for (int i = 0; i < 3; i++) {
         struct pollfd due = {.fd = camera_descriptor(p.device), .events = POLLIN};
@@ -225,17 +234,17 @@ static void recorded_times_set_the_pace_and_the_numbers(void **state)
 {
     (void)state;
     write_raw("a.raw", 4);
-    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n7 1000000000 500\n8 1010000000 600\n12 1100000000 0\n");
+    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n7 1000000000 500\n8 1300000000 600\n12 1900000000 0\n");
     player p = play("file:", "a.raw");
     assert_int_equal(next(&p), CAMERA_FRAME);
     int64_t first_ns = p.got.image.time_ns;
     assert_int_equal(p.got.exposure_us, 500);
     assert_int_equal(next(&p), CAMERA_FRAME);
-    assert_int_equal(p.got.image.time_ns - first_ns, 10000000);
+    assert_int_equal(p.got.image.time_ns - first_ns, 300000000);
     assert_int_equal(p.got.exposure_us, 600);
     assert_int_equal(p.got.dropped, 0);
     assert_int_equal(next(&p), CAMERA_FRAME);
-    assert_int_equal(p.got.image.time_ns - first_ns, 100000000);
+    assert_int_equal(p.got.image.time_ns - first_ns, 900000000);
     assert_int_equal(p.got.dropped, 3);
     assert_int_equal(p.got.image.data[0], 2);
     /* The fourth frame was not whole when the recording ended. */
@@ -247,11 +256,14 @@ static void times_that_jump_do_not_stop_it(void **state)
 {
     (void)state;
     write_raw("a.raw", 4);
-    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n0 4000000000000000000 0\n1 5 0\n2 4000000000000000001 0\n"
-                              "3 4611686018427387903 0\n");
+    write_text("a.raw.times", "# tapemark times 1 GREY:4x2:4\n0 4000000000000000000 0\n1 5 0\n"
+                              "2 4000000000000000001 0\n3 4611686018427387903 0\n");
     player p = play("file:", "a.raw");
-    for (int i = 0; i < 3; i++)
-        assert_int_equal(next(&p), CAMERA_FRAME);
+    camera_status status;
+    do
+        status = camera_next(p.device, 100, &p.got, &p.error);
+    while (status == CAMERA_FRAME && p.got.image.sequence < 2);
+    assert_int_equal(status, CAMERA_FRAME);
     assert_int_equal(camera_next(p.device, 1, &p.got, &p.error), CAMERA_TIMEOUT);
     camera_close(p.device);
 }
@@ -348,15 +360,7 @@ static void a_directory_is_played_in_order(void **state)
     write_text("d/3.pgm", "P2 4 2 255 9 9 9 9 9 9 9 9\n");
     player p = play("file:", "d");
     static const uint8_t values[] = {0, 1, 2, 0, 1, 9};
-    int64_t last_ns = 0;
-    for (size_t i = 0; i < COUNT_OF(values); i++) {
-        assert_int_equal(next(&p), CAMERA_FRAME);
-        assert_int_equal(p.got.image.data[0], values[i]);
-        if (i > 0)
-            assert_int_equal(p.got.image.time_ns - last_ns, 10000000);
-        last_ns = p.got.image.time_ns;
-    }
-    assert_int_equal(next(&p), CAMERA_END);
+    assert_int_equal(play_to_the_end(&p, 10000000, values), COUNT_OF(values));
     camera_close(p.device);
 
     write_text("d/2.y4m", "YUV4MPEG2 W4 H2 Cmono\nFRAME\n12");

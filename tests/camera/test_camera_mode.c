@@ -69,7 +69,8 @@ static void what_there_is_is_told(void **state)
     (void)state;
     EXPECT(webcam, -1, .format = "GREY");
     EXPECT(webcam, -1, .width_px = 800, .height_px = 600);
-    assert_null(camera_mode_choose(webcam, COUNT_OF(webcam), &(camera_wishes){.width_px = 800, .height_px = 600}, &error));
+    const camera_wishes not_there = {.width_px = 800, .height_px = 600};
+    assert_null(camera_mode_choose(webcam, COUNT_OF(webcam), &not_there, &error));
     assert_string_equal(error.text, "does not offer any format:800x600; it has YUYV:640x480 YUYV:1280x720 "
                                     "YUYV:1920x1080 MJPEG:640x480 MJPEG:1280x720 MJPEG:1920x1080");
     assert_null(camera_mode_choose(webcam, 0, &(camera_wishes){0}, &error));

@@ -73,8 +73,9 @@ static camera *play(const char *path, error_text *error)
 static void raw_recordings_are_byte_for_byte(void **state)
 {
     static const frame_layout layouts[] = {
-        {PIXEL_GREY, WIDTH, HEIGHT, WIDTH + 8}, {PIXEL_Y10P, WIDTH, HEIGHT, 64},    {PIXEL_YUYV, WIDTH, HEIGHT, 2 * WIDTH},
-        {PIXEL_NV12, WIDTH, HEIGHT, WIDTH},     {PIXEL_YU12, WIDTH, HEIGHT, WIDTH}, {PIXEL_SRGGB10, WIDTH, HEIGHT, 96},
+        {PIXEL_GREY, WIDTH, HEIGHT, WIDTH + 8}, {PIXEL_Y10P, WIDTH, HEIGHT, 64},
+        {PIXEL_YUYV, WIDTH, HEIGHT, 2 * WIDTH}, {PIXEL_NV12, WIDTH, HEIGHT, WIDTH},
+        {PIXEL_YU12, WIDTH, HEIGHT, WIDTH},     {PIXEL_SRGGB10, WIDTH, HEIGHT, 96},
     };
     (void)state;
     for (size_t k = 0; k < COUNT_OF(layouts); k++) {
@@ -150,9 +151,8 @@ static off_t size_of(const char *path)
 }
 
 /* Room for a number of bytes in each file, as the disk might have. */
-static void record_into(rlim_t room_bytes, const char *name)
+static unsigned record_into(rlim_t room_bytes, const char *name, const frame_layout *layout)
 {
-    static const frame_layout layout = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
     struct rlimit before, limit;
     error_text error = {""};
     unsigned added = 0;
@@ -162,22 +162,47 @@ static void record_into(rlim_t room_bytes, const char *name)
     recording *file = recording_open(in_folder(name), 0, &error);
     assert_non_null(file);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &limit), 0);
-    camera_frame given = frame_of(&layout, added);
+    camera_frame given = frame_of(layout, added);
     while (added < FRAMES && recording_add(file, &given, &error))
-        given = frame_of(&layout, ++added);
+        given = frame_of(layout, ++added);
     assert_true(added < FRAMES);
-    assert_int_not_equal(strlen(error.text), 0);
+    assert_string_equal(error.text, "the recording ends here: File too large");
     assert_false(recording_add(file, &given, &error));
     bool closed = recording_close(file, &error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
     assert_true(closed);
+    return added;
+}
 
-    if (added == 0)
-        return;
-    assert_int_equal(size_of(in_folder(name)) % (WIDTH * HEIGHT), strstr(name, ".y4m") != NULL ? 44 + 6 * added : 0);
+/* Lines of the times of a recording; all have to be ended. */
+static unsigned lines_of_times(const char *name)
+{
+    char path[400];
+    snprintf(path, sizeof path, "%s.times", in_folder(name));
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    unsigned lines = 0;
+    int last = '\n';
+    for (int byte = fgetc(file); byte != EOF; byte = fgetc(file)) {
+        lines += byte == '\n';
+        last = byte;
+    }
+    fclose(file);
+    assert_int_equal(last, '\n');
+    return lines;
+}
+
+static void expect_whole_frames(const char *name, const frame_layout *layout, unsigned count)
+{
+    enum { Y4M_HEAD_BYTES = 44, Y4M_FRAME_HEAD_BYTES = 6 };
+    bool y4m = strstr(name, ".y4m") != NULL;
+    size_t frame_bytes = frame_layout_size_bytes(layout) + (y4m ? Y4M_FRAME_HEAD_BYTES : 0);
+    error_text error;
     camera_frame got;
+    assert_true(size_of(in_folder(name)) == (off_t)(count * frame_bytes) + (y4m ? Y4M_HEAD_BYTES : 0));
+    assert_int_equal(lines_of_times(name), 1 + count);
     camera *device = play(in_folder(name), &error);
-    for (unsigned i = 0; i < added; i++)
+    for (unsigned i = 0; i < count; i++)
         assert_int_equal(camera_next(device, 100, &got, &error), CAMERA_FRAME);
     assert_int_equal(camera_next(device, 100, &got, &error), CAMERA_END);
     camera_close(device);
@@ -185,11 +210,20 @@ static void record_into(rlim_t room_bytes, const char *name)
 
 static void a_full_disk_ends_it_at_a_whole_frame(void **state)
 {
+    static const frame_layout layout = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    /* Of which the times take more room than the frames. */
+    static const frame_layout tiny = {PIXEL_GREY, 2, 1, 2};
+    unsigned count;
     (void)state;
     for (rlim_t room = 0; room < 3 * WIDTH * HEIGHT; room += 97) {
-        record_into(room, "full.raw");
-        record_into(room, "full.y4m");
+        if ((count = record_into(room, "full.raw", &layout)) > 0)
+            expect_whole_frames("full.raw", &layout, count);
+        if ((count = record_into(room, "full.y4m", &layout)) > 0)
+            expect_whole_frames("full.y4m", &layout, count);
     }
+    for (rlim_t room = 0; room < 150; room++)
+        if ((count = record_into(room, "tiny.raw", &tiny)) > 0)
+            expect_whole_frames("tiny.raw", &tiny, count);
 }
 
 static void a_device_that_is_full_ends_it(void **state)
@@ -208,7 +242,8 @@ static void a_device_that_is_full_ends_it(void **state)
 
 static void another_size_ends_it(void **state)
 {
-    static const frame_layout first = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH}, second = {PIXEL_GREY, HEIGHT, WIDTH, HEIGHT};
+    static const frame_layout first = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    static const frame_layout second = {PIXEL_GREY, HEIGHT, WIDTH, HEIGHT};
     error_text error;
     (void)state;
     recording *file = recording_open(in_folder("size.raw"), 0, &error);

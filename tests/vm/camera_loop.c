@@ -3,8 +3,11 @@
  * as they are, in each format and size; a slow reader has to get new frames; a camera that is taken away has to be
  * missed.
  *
- *     camera_loop CAPTURE OUTPUT FORMAT WIDTH HEIGHT FRAMES
- *     camera_loop gone CAPTURE DRIVER DEVICE    takes the device from its driver while frames come
+ *     camera_loop vivid CAPTURE OUTPUT FORMAT WIDTH HEIGHT FRAMES
+ *     camera_loop live CAMERA FORMAT WIDTH HEIGHT FRAMES    where the pictures come from outside
+ *     camera_loop unbind CAPTURE DRIVER DEVICE              takes the device from its driver while frames come
+ *     camera_loop unplug CAMERA FORMAT WIDTH HEIGHT         waits until somebody does, and until it is back
+ *     camera_loop list
  */
 #include <signal.h>
 #include <stdio.h>
@@ -20,12 +23,12 @@
 #include "tapemark.h"
 #include "vivid.h"
 
-enum { SLOW_FRAMES = 8, SLOW_MS = 400 };
+enum { SLOW_FRAMES = 3, SLOW_MS = 900 };
 
 typedef struct loop_check {
     camera *device;
     gray_converter gray;
-    uint8_t *expected;
+    uint8_t *kinds;
     void *workspace;
     uint32_t last_number;
     uint64_t last_sequence;
@@ -44,7 +47,8 @@ static bool reads_tape(const loop_check *check, const gray_view *view, uint32_t 
     tapemark_cm cms[16];
     tapemark_result result = {.cms = cms, .cm_capacity = 16};
     tapemark_image image = {view->pixels, view->width_px, view->height_px, view->stride_bytes};
-    tapemark_decode(&image, NULL, check->workspace, tapemark_workspace_bytes(view->width_px, view->height_px), &result);
+    tapemark_decode(&image, NULL, check->workspace, tapemark_workspace_bytes(view->width_px, view->height_px),
+                    &result);
     bool right = result.cm_count == PICTURE_CMS;
     for (size_t i = 0; i < result.cm_count; i++)
         right = right && cms[i].id >= picture_first_id(number) && cms[i].id < picture_first_id(number) + PICTURE_CMS;
@@ -55,9 +59,9 @@ static void compare(loop_check *check, const gray_view *view, uint32_t number)
 {
     size_t width = (size_t)view->width_px;
     bool same = true;
-    picture_draw(check->expected, view->width_px, view->height_px, number);
+    const uint8_t *expected = picture_of_number(check->kinds, view->width_px, view->height_px, number);
     for (int32_t y = 0; same && y < view->height_px; y++)
-        same = memcmp(view->pixels + y * view->stride_bytes, check->expected + (size_t)y * width, width) == 0;
+        same = memcmp(view->pixels + y * view->stride_bytes, expected + (size_t)y * width, width) == 0;
     check->compared++;
     check->wrong += !same;
     check->unread += !reads_tape(check, view, number);
@@ -108,37 +112,42 @@ static bool check_frames(loop_check *check, unsigned wanted)
     return true;
 }
 
-/* However slow the reader, it gets a frame of now: age stays that of frames that are waited for, and a frame time. */
-static bool check_slow_reader(loop_check *check, unsigned *dropped, int64_t *oldest_ns)
+static bool next_in_sequence(loop_check *check, camera_frame *got)
 {
     error_text error;
+    if (camera_next(check->device, 3000, got, &error) != CAMERA_FRAME)
+        return fail("slow reader", "gets no frames");
+    if (got->image.sequence != check->last_sequence + got->dropped + 1)
+        return fail("slow reader", "sequence does not agree with the frames dropped");
+    check->last_sequence = got->image.sequence;
+    return true;
+}
+
+/* However slow the reader, it gets a frame of now: most that it missed came before that one, and not between it and
+ * the one that comes next. */
+static bool check_slow_reader(loop_check *check, unsigned *missed, unsigned *following)
+{
     camera_frame got;
-    *dropped = 0;
-    *oldest_ns = 0;
+    *missed = 0;
+    *following = 0;
     for (int i = 0; i < SLOW_FRAMES; i++) {
         nanosleep(&(struct timespec){0, SLOW_MS * 1000000L}, NULL);
-        camera_status status = camera_next(check->device, 3000, &got, &error);
-        if (status != CAMERA_FRAME)
-            return fail("slow reader", "gets no frames");
-        int64_t age_ns = camera_clock_ns() - got.image.time_ns;
-        *oldest_ns = age_ns > *oldest_ns ? age_ns : *oldest_ns;
-        *dropped += got.dropped;
-        if (got.image.sequence != check->last_sequence + got.dropped + 1)
-            return fail("slow reader", "sequence does not agree with the frames dropped");
-        check->last_sequence = got.image.sequence;
+        if (!next_in_sequence(check, &got))
+            return false;
+        *missed += got.dropped;
+        if (!next_in_sequence(check, &got))
+            return false;
+        *following += got.dropped;
     }
-    if (*dropped < SLOW_FRAMES)
+    if (*missed == 0)
         return fail("slow reader", "was not told of frames that it missed");
-    if (*oldest_ns > INT64_C(1000000) * SLOW_MS / 2)
-        return fail("slow reader", "gets old frames");
-    return true;
+    return *following <= *missed || fail("slow reader", "gets old frames");
 }
 
 static bool run_checks(loop_check *check, const char *name, const camera_wishes *wishes, unsigned frames)
 {
     error_text error;
-    unsigned dropped;
-    int64_t slow_ns;
+    unsigned missed = 0, following = 0;
     check->device = camera_open(name, &error);
     if (check->device == NULL || !camera_configure(check->device, wishes, &error))
         return fail(name, error.text);
@@ -147,27 +156,52 @@ static bool run_checks(loop_check *check, const char *name, const camera_wishes 
         return false;
     double seconds = (double)(camera_clock_ns() - start_ns) * 1e-9;
     camera_counts counts = camera_counts_of(check->device);
-    if (!check_slow_reader(check, &dropped, &slow_ns))
-        return false;
+    bool fresh = check_slow_reader(check, &missed, &following);
     printf("%s %dx%d: %u frames compared, %u wrong, %u not read, %u repeated by vivid, %llu dropped, %llu damaged, "
-           "%.1f a second, oldest %.1f ms; a slow reader misses %u, oldest %.1f ms\n", wishes->format,
-           wishes->width_px, wishes->height_px, check->compared, check->wrong, check->unread, check->repeated,
+           "%.1f a second, oldest %.1f ms; a slow reader misses %u, %u of them behind those it gets\n",
+           wishes->format, wishes->width_px, wishes->height_px, check->compared, check->wrong, check->unread,
+           check->repeated,
            (unsigned long long)counts.dropped, (unsigned long long)counts.damaged, frames / seconds,
-           (double)check->oldest_ns * 1e-6, dropped, (double)slow_ns * 1e-6);
-    return check->wrong == 0 && check->unread == 0 && counts.damaged == 0;
+           (double)check->oldest_ns * 1e-6, missed + following, following);
+    return fresh && check->wrong == 0 && check->unread == 0 && counts.damaged == 0;
 }
 
-static bool check_loop(char **arguments)
+static bool parse_layout(char **format_and_size, frame_layout *layout)
+{
+    error_text error;
+    char text[80];
+    snprintf(text, sizeof text, "%s:%sx%s", format_and_size[0], format_and_size[1], format_and_size[2]);
+    return frame_layout_parse(text, layout, &error) || fail(text, error.text);
+}
+
+static bool check_live(const char *name, char **format_and_size, const char *frames)
+{
+    frame_layout layout;
+    loop_check check = {0};
+    if (!parse_layout(format_and_size, &layout))
+        return false;
+    camera_wishes wishes = {
+        .format = format_and_size[0], .width_px = layout.width_px, .height_px = layout.height_px};
+    check.kinds = picture_draw_kinds(layout.width_px, layout.height_px);
+    check.workspace = malloc(tapemark_workspace_bytes(layout.width_px, layout.height_px));
+    bool done = check.kinds != NULL && check.workspace != NULL &&
+                run_checks(&check, name, &wishes, (unsigned)strtoul(frames, NULL, 10));
+    camera_close(check.device);
+    gray_converter_release(&check.gray);
+    free(check.kinds);
+    free(check.workspace);
+    return done;
+}
+
+static bool check_vivid(char **arguments)
 {
     error_text error;
     vivid_output output;
     frame_layout layout;
-    char name[80], text[80];
-    loop_check check = {0};
+    char name[80];
     snprintf(name, sizeof name, "v4l2:%s", arguments[0]);
-    snprintf(text, sizeof text, "%s:%sx%s", arguments[2], arguments[3], arguments[4]);
-    if (!frame_layout_parse(text, &layout, &error))
-        return fail(text, error.text);
+    if (!parse_layout(arguments + 2, &layout))
+        return false;
     if (!vivid_connect(arguments[0], arguments[1], layout.width_px, layout.height_px, &error) ||
         !vivid_output_open(&output, arguments[1], layout.format, layout.width_px, layout.height_px, &error))
         return fail(arguments[1], error.text);
@@ -177,17 +211,9 @@ static bool check_loop(char **arguments)
         fail("writer", error.text);
         _exit(1);
     }
-    camera_wishes wishes = {.format = arguments[2], .width_px = layout.width_px, .height_px = layout.height_px};
-    check.expected = malloc((size_t)layout.width_px * (size_t)layout.height_px);
-    check.workspace = malloc(tapemark_workspace_bytes(layout.width_px, layout.height_px));
-    bool done = check.expected != NULL && check.workspace != NULL &&
-                run_checks(&check, name, &wishes, (unsigned)strtoul(arguments[5], NULL, 10));
+    bool done = check_live(name, arguments + 2, arguments[5]);
     kill(writer, SIGKILL);
     waitpid(writer, NULL, 0);
-    camera_close(check.device);
-    gray_converter_release(&check.gray);
-    free(check.expected);
-    free(check.workspace);
     return done;
 }
 
@@ -200,7 +226,7 @@ static bool unbind(const char *driver, const char *device)
     return file != NULL && fclose(file) == 0 && written;
 }
 
-static bool check_gone(char **arguments)
+static bool check_unbind(char **arguments)
 {
     error_text error = {""};
     camera_frame got;
@@ -210,25 +236,89 @@ static bool check_gone(char **arguments)
     if (device == NULL || !camera_configure(device, &(camera_wishes){.format = "GREY"}, &error))
         return fail(name, error.text);
     if (camera_next(device, 3000, &got, &error) != CAMERA_FRAME)
-        return fail("gone", "no frame came before");
+        return fail("unbind", "no frame came before");
     if (!unbind(arguments[1], arguments[2]))
         return fail(arguments[1], "cannot take the device");
     camera_status status = CAMERA_FRAME;
     int64_t start_ns = camera_clock_ns();
     while (status == CAMERA_FRAME)
         status = camera_next(device, 3000, &got, &error);
-    printf("gone: status %d after %.1f ms: %s\n", (int)status, (double)(camera_clock_ns() - start_ns) * 1e-6, error.text);
+    printf("unbind: status %d after %.1f ms: %s\n", (int)status, (double)(camera_clock_ns() - start_ns) * 1e-6,
+           error.text);
     camera_close(device);
     return status == CAMERA_GONE;
 }
 
+static camera *open_camera(const char *name, const camera_wishes *wishes)
+{
+    error_text error;
+    camera *device = camera_open(name, &error);
+    if (device != NULL && camera_configure(device, wishes, &error))
+        return device;
+    camera_close(device);
+    return NULL;
+}
+
+/* As a service would: frames until the camera is gone, then another try every now and then. */
+static bool check_unplug(const char *name, char **format_and_size)
+{
+    enum { TRIES_MAX = 100, TRY_MS = 200 };
+    frame_layout layout;
+    error_text error = {""};
+    camera_frame got;
+    camera_status status = CAMERA_FRAME;
+    if (!parse_layout(format_and_size, &layout))
+        return false;
+    camera_wishes wishes = {
+        .format = format_and_size[0], .width_px = layout.width_px, .height_px = layout.height_px};
+    camera *device = open_camera(name, &wishes);
+    unsigned before = 0;
+    while (device != NULL && (status = camera_next(device, 3000, &got, &error)) == CAMERA_FRAME)
+        before++;
+    camera_close(device);
+    if (before == 0 || status != CAMERA_GONE)
+        return fail("unplugged camera", before == 0 ? "gave no frames before" : "is not reported as gone");
+
+    int tries = 0;
+    for (device = NULL; device == NULL && tries < TRIES_MAX; tries++) {
+        nanosleep(&(struct timespec){0, TRY_MS * 1000000L}, NULL);
+        device = open_camera(name, &wishes);
+    }
+    bool back = device != NULL && camera_next(device, 3000, &got, &error) == CAMERA_FRAME;
+    camera_close(device);
+    printf("%s: %u frames, then: %s; %s after %d tries\n", name, before, error.text, back ? "back" : "not back",
+           tries);
+    return back;
+}
+
+static void tell_camera(void *context, const camera_description *description)
+{
+    unsigned *count = context;
+    (*count)++;
+    printf("%s: %s, %zu modes\n", description->name, description->label, description->mode_count);
+}
+
+static bool list_cameras(void)
+{
+    unsigned count = 0;
+    camera_list(tell_camera, &count);
+    return count > 0 || fail("list", "no camera");
+}
+
 int main(int argc, char **argv)
 {
+    const char *command = argc > 1 ? argv[1] : "";
     bool done = false;
     setvbuf(stdout, NULL, _IOLBF, 0);
-    if (argc == 7)
-        done = check_loop(argv + 1);
-    else if (argc == 5 && strcmp(argv[1], "gone") == 0)
-        done = check_gone(argv + 2);
+    if (strcmp(command, "vivid") == 0 && argc == 8)
+        done = check_vivid(argv + 2);
+    else if (strcmp(command, "live") == 0 && argc == 7)
+        done = check_live(argv[2], argv + 3, argv[6]);
+    else if (strcmp(command, "unbind") == 0 && argc == 5)
+        done = check_unbind(argv + 2);
+    else if (strcmp(command, "unplug") == 0 && argc == 6)
+        done = check_unplug(argv[2], argv + 3);
+    else if (strcmp(command, "list") == 0)
+        done = list_cameras();
     return done ? EXIT_SUCCESS : EXIT_FAILURE;
 }

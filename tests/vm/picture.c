@@ -1,5 +1,6 @@
 #include "picture.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "tapemark.h"
@@ -53,6 +54,22 @@ void picture_draw(uint8_t *pixels, int32_t width_px, int32_t height_px, uint32_t
     draw_wall(pixels, width_px, height_px, number % PICTURE_KINDS + 1);
     draw_tape(pixels, width_px, 20 + 30 * kind, height_px / 3 + 20 * kind, picture_first_id(number));
     picture_set_number(pixels, width_px, number);
+}
+
+uint8_t *picture_draw_kinds(int32_t width_px, int32_t height_px)
+{
+    size_t pixels = (size_t)width_px * (size_t)height_px;
+    uint8_t *kinds = malloc(PICTURE_KINDS * pixels);
+    for (uint32_t kind = 0; kinds != NULL && kind < PICTURE_KINDS; kind++)
+        picture_draw(kinds + kind * pixels, width_px, height_px, kind);
+    return kinds;
+}
+
+uint8_t *picture_of_number(uint8_t *kinds, int32_t width_px, int32_t height_px, uint32_t number)
+{
+    uint8_t *picture = kinds + number % PICTURE_KINDS * (size_t)width_px * (size_t)height_px;
+    picture_set_number(picture, width_px, number);
+    return picture;
 }
 
 bool picture_number(const uint8_t *pixels, ptrdiff_t stride_bytes, uint32_t *number)

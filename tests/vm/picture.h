@@ -6,8 +6,15 @@
 
 enum { PICTURE_KINDS = 4, PICTURE_CMS = 4 };
 
-/* Gray, rows without gaps. Pictures of numbers that differ by a multiple of PICTURE_KINDS differ in the number only. */
+/* Gray, rows without gaps. Pictures whose numbers differ by a multiple of PICTURE_KINDS differ in the number only. */
 void picture_draw(uint8_t *pixels, int32_t width_px, int32_t height_px, uint32_t number);
+
+/* One picture of each kind, one after the other, malloc'ed: drawing takes longer than a frame does. NULL when memory
+ * runs out. */
+uint8_t *picture_draw_kinds(int32_t width_px, int32_t height_px);
+
+/* The one of them that picture `number` is, with its number set. */
+uint8_t *picture_of_number(uint8_t *kinds, int32_t width_px, int32_t height_px, uint32_t number);
 
 /* The first id of the tape in such a picture; the others follow. */
 int32_t picture_first_id(uint32_t number);

@@ -104,33 +104,22 @@ bool vivid_output_open(vivid_output *output, const char *path, pixel_format form
     return map_buffers(output, error);
 }
 
-/* The numbers go into pictures that were made before, so that drawing does not set the pace. */
-static uint8_t *draw_all(const frame_layout *layout)
-{
-    size_t pixels = (size_t)layout->width_px * (size_t)layout->height_px;
-    uint8_t *all = malloc(PICTURE_KINDS * pixels);
-    for (uint32_t kind = 0; all != NULL && kind < PICTURE_KINDS; kind++)
-        picture_draw(all + kind * pixels, layout->width_px, layout->height_px, kind);
-    return all;
-}
-
 void vivid_output_run(vivid_output *output, error_text *error)
 {
     int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
-    size_t pixels = (size_t)output->layout.width_px * (size_t)output->layout.height_px;
-    uint8_t *all = draw_all(&output->layout);
+    const frame_layout *layout = &output->layout;
+    uint8_t *all = picture_draw_kinds(layout->width_px, layout->height_px);
     bool done = all != NULL;
     for (uint32_t number = 0; done; number++) {
         struct v4l2_buffer buffer = {
             .index = number, .type = V4L2_BUF_TYPE_VIDEO_OUTPUT, .memory = V4L2_MEMORY_MMAP};
-        uint8_t *picture = all + number % PICTURE_KINDS * pixels;
         if (number == VIVID_BUFFERS && !call(output->descriptor, VIDIOC_STREAMON, &type, "STREAMON", error))
             break;
         if (number >= VIVID_BUFFERS && !call(output->descriptor, VIDIOC_DQBUF, &buffer, "DQBUF", error))
             break;
-        picture_set_number(picture, output->layout.width_px, number);
-        picture_encode(picture, &output->layout, output->buffers[buffer.index]);
-        buffer.bytesused = (uint32_t)frame_layout_size_bytes(&output->layout);
+        picture_encode(picture_of_number(all, layout->width_px, layout->height_px, number), layout,
+                       output->buffers[buffer.index]);
+        buffer.bytesused = (uint32_t)frame_layout_size_bytes(layout);
         buffer.field = V4L2_FIELD_NONE;
         done = call(output->descriptor, VIDIOC_QBUF, &buffer, "QBUF", error);
     }
