@@ -50,7 +50,7 @@ expect_refusal 2 'tapemark-make: expected one of PLAN.json, --line and --cms, no
 expect_refusal 2 "tapemark-make: option '--frobnicate' is unknown" --frobnicate
 expect_refusal 2 'tapemark-make: where to? -o DIRECTORY is missing' --cms 6
 expect_refusal 2 'tapemark-make: where to? -o DIRECTORY is missing' --cms 6 -o ''
-expect_refusal 2 'tapemark-make: --line: expected a length with its unit' --line 3.2 -o made
+expect_refusal 2 'tapemark-make: --line: expected a length in m, cm, mm or in' --line 3.2 -o made
 expect_refusal 2 'tapemark-make: --only: 5..7 is not all on this tape, which has the ids 0 to 5' \
     --cms 6 --only 5..7 -o made
 expect_files . 'err out '
