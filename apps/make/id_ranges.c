@@ -44,7 +44,7 @@ bool parse_id_ranges(const char *text, print_id_range **ranges, size_t *count, e
     }
     free(*ranges);
     *ranges = NULL;
-    error_text_set(error, "expected ids such as 17..20 or 5,17..20, from 0 to %d and the smaller first, not \"%.40s\"",
-                   TAPEMARK_MAX_ID, text);
+    error_text_set(error, "expected ids such as 17..20 or 5,17..20, from 0 to %d and the smaller first, not "
+                   "\"%.40s\"", TAPEMARK_MAX_ID, text);
     return false;
 }

@@ -131,9 +131,9 @@ static bool apply_whole(const char *argument, unsigned least, unsigned most, uns
 
 static bool apply_module(const char *argument, double modules, plan *quick, error_text *error)
 {
-    const value_range range = {VALUE_LENGTH, PLAN_MODULE_MIN_MM * modules / 1000, PLAN_MODULE_MAX_MM * modules / 1000};
+    const double least_m = PLAN_MODULE_MIN_MM * modules / 1000, most_m = PLAN_MODULE_MAX_MM * modules / 1000;
     double length_m;
-    if (!parse_value(argument, range, &length_m, error))
+    if (!parse_value(argument, (value_range){VALUE_LENGTH, least_m, most_m}, &length_m, error))
         return false;
     quick->module_mm = length_m * 1000 / modules;
     return true;

@@ -1,6 +1,6 @@
-/* Values on the command line: numbers, lengths, times and percentages with their units, and lists of them. Numbers are
- * decimal, without exponents. Each function tells in the error what would be right; the caller puts the option's name
- * in front. */
+/* Values on the command line: numbers, lengths, times and percentages with their units, and lists of them. Numbers
+ * are decimal, without exponents. Each function tells in the error what would be right; the caller puts the option's
+ * name in front. */
 #ifndef OPTIONS_OPTION_VALUES_H
 #define OPTIONS_OPTION_VALUES_H
 

@@ -121,7 +121,7 @@ static void lengths_have_units(void **state)
     expect_wrong("--line 0m -o o", "--line: expected a length in m, cm, mm or in from 0.0001m to 2500m, not \"0m\"");
     expect_wrong("--line 2501m -o o", "from 0.0001m to 2500m");
     expect_wrong("--line 99999999999999999999999999999999999999999m -o o", "from 0.0001m to 2500m");
-    expect_wrong("--cms 1 -o o --module 0.0086mm", "--module: expected a length in m, cm, mm or in from 0.1mm to 150mm, not \"0.0086mm\"");
+    expect_wrong("--cms 1 -o o --module 0.0086mm", "from 0.1mm to 150mm, not \"0.0086mm\"");
     expect_wrong("--cms 1 -o o --height 1.06m", "from 0.0007m to 1.05m, not \"1.06m\"");
 }
 
