@@ -1,10 +1,10 @@
 /* tapemark-render: what a camera sees of tapes and other markers, with the truth about it. */
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "frame_output.h"
 #include "output_file.h"
+#include "process.h"
 #include "render_options.h"
 #include "scene.h"
 #include "stage.h"
@@ -153,7 +153,10 @@ static int answer(int argc, char *argv[], render_options *all)
 int main(int argc, char *argv[])
 {
     static render_options all;
-    signal(SIGPIPE, SIG_IGN);
+    if (!process_prepare()) {
+        error_text error = {"standard output: is closed"};
+        return fail(EXIT_BAD_INPUT, &error);
+    }
     int status = answer(argc, argv, &all);
     render_options_release(&all);
     return status;

@@ -186,6 +186,11 @@ got=0
 expect_lines err 1
 expect err 'standard output: No space left on device'
 
+got=0
+"$program" --cms 3 -o made >&- 2>err || got=$?
+[ "$got" -eq 1 ] || fail 'closed standard output'
+expect err 'tapemark-make: standard output: is closed'
+
 # ---- Interruption ---------------------------------------------------------------------------------------------
 
 plan '' "$upper,$upper,$upper,$upper,$upper,$upper"

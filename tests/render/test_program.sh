@@ -65,9 +65,14 @@ done
 expect_refusal 1 '/dev/full: cannot be written' --truth /dev/full -o a.pgm
 expect_refusal 1 'none/t: cannot be written' --truth none/t -o a.pgm
 nothing_left
+got=0
+"$program" --truth - -o a.pgm >&- 2>err || got=$?
+[ "$got" -eq 1 ] || fail 'closed standard output'
+expect err 'tapemark-render: standard output: is closed'
+nothing_left
 if (ulimit -f 1 && ! dd if=/dev/zero of=given/big bs=4096 count=64 2>/dev/null); then
     # A limit of a block or so of file size stands for a disk that fills up while frames are written.
-    (trap '' XFSZ && ulimit -f 100 && expect_refusal 1 'a-000' --frames 4 --size 320x240 -o a.pgm && : >given/limited)
+    (ulimit -f 100 && expect_refusal 1 'a-000' --frames 4 --size 320x240 -o a.pgm && : >given/limited)
     [ -f given/limited ] || fail 'a limited file was written'
     nothing_left
 fi
