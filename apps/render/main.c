@@ -51,7 +51,8 @@ static bool write_frames(render_run *run, error_text *error)
 {
     static scene_truth truth;
     for (size_t frame = 0; frame < run->here.frame_count; frame++) {
-        stage_show(&run->here, frame);
+        if (!stage_show(&run->here, frame, error))
+            return false;
         if (!render(run, &truth)) {
             error_text_set(error, "not enough memory for frames of %d x %d px", (int)run->here.view.width_px,
                            (int)run->here.view.height_px);

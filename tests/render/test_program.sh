@@ -57,6 +57,11 @@ printf 'P5\n100 100\n255\nshort' >given/short.pgm
 expect_refusal 1 'given/short.pgm: ' --picture given/short.pgm:60mm -o a.pgm
 printf 'time_s,x_m,y_m,height_m,heading_deg\n0,1,2,1,-90\n900000,2,2,1,-90\n' >given/long.csv
 expect_refusal 1 'lower --fps, or limit --frames' --map given/map.json --path given/long.csv -o a.y4m
+printf 'time_s,x_m,y_m,height_m,heading_deg\n0,1,2,1,-90\n1,1,2,1,-90\n1.001,1,2,1,60\n2,1,2,1,60\n' >given/jump.csv
+expect_refusal 1 'given/jump.csv: frame 1, at 1 s: the camera turns by more than 90 degrees during the exposure' \
+    --map given/map.json --path given/jump.csv --fps 1 --shutter 10ms -o a.y4m
+expect_refusal 1 'the readout is out of range, 0 to 1000 exposures' --map given/map.json --path given/way.csv \
+    --shutter 0.001ms --readout 10s -o a.y4m
 expect_refusal 1 'none/a.pgm: cannot be written: No such file or directory' -o none/a.pgm
 expect_refusal 1 'given: is a directory' --format PGM -o given
 for format in PGM PNG Y4M NV12; do
