@@ -180,7 +180,7 @@ static bool is_dark_near(const raster *picture, double x_px, double y_px)
     return dark;
 }
 
-/* The scale stands below the room at the left, and what is on the plan at the right, also of a room that is but high. */
+/* The scale stands below the room at the left, the summary at the right, also where the room is high and narrow. */
 static void the_scale_leaves_room_for_the_summary(void **state)
 {
     const double px_per_mm = 5, margin_mm = 11, below_mm = 9, end_mm = 0.5, summary_mm = 66;
