@@ -1,10 +1,10 @@
 #!/bin/sh
 # usage: check_data.sh DATA_DIRECTORY tapemark-render tapemark-make picture_pixels
 #
-# Runs the tapemark-render and tapemark-make commands in the README of the data directory again, in a directory of their
-# own, and compares: every file there is must come out as it is, pictures pixel by pixel. Another compiler or C library
-# may round a value the other way, so one byte in a thousand may differ; and of the plan's picture, letters in other
-# fonts: one in twenty.
+# Runs the tapemark-render and tapemark-make commands in the README of the data directory again, in a directory of
+# their own, and compares: every file there is must come out as it is, pictures pixel by pixel. Another compiler or C
+# library may round a value the other way, so one byte in a thousand may differ; and of the plan's picture, letters in
+# other fonts: one in twenty.
 set -eu
 
 data=$(cd "$1" && pwd)
