@@ -28,12 +28,14 @@ static bool read_code(const map_reading *reading, const cJSON *item, map_segment
                                   MAP_CODE_MAX);
     if (complete != NULL && !cJSON_IsBool(complete))
         return map_reading_refuse(reading, IN_SEGMENT, "\"complete\" must be true or false");
+    if (length == 0 && cJSON_IsFalse(complete))
+        return map_reading_refuse(reading, IN_SEGMENT, "has no \"code\", so it cannot be incomplete");
     memcpy(segment->code, code != NULL ? code : "", length + 1);
     segment->complete = complete == NULL || cJSON_IsTrue(complete);
     size_t wanted = length > 0 ? length : 1, count = segment->cm_count;
     if (segment->complete ? count == wanted : count > 0 && count < wanted)
         return true;
-    if (!segment->complete && length > 0)
+    if (!segment->complete)
         return map_reading_refuse(reading, IN_SEGMENT,
                                   "is not \"complete\", so \"cms\" needs 1 to %zu code markers, not %zu", wanted - 1,
                                   count);

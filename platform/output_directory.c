@@ -188,13 +188,24 @@ static bool make_temporary(output_directory *directory)
     return true;
 }
 
-static bool prepare(output_directory *directory, const char *path, error_text *error)
+/* What rules out a directory of this name; NULL when nothing does. */
+static const char *obstacle(const char *path, bool *existed)
 {
     struct stat status;
+    *existed = stat(path, &status) == 0;
+    if (path[0] == '\0')
+        return "has no name";
+    if (*existed)
+        return S_ISDIR(status.st_mode) ? NULL : "is not a directory";
+    return lstat(path, &status) == 0 && S_ISLNK(status.st_mode) ? "is a link to nothing" : NULL;
+}
+
+static bool prepare(output_directory *directory, const char *path, error_text *error)
+{
     directory->path = without_last_slashes(path);
-    directory->existed = stat(path, &status) == 0;
-    if (path[0] == '\0' || (directory->existed && !S_ISDIR(status.st_mode))) {
-        error_text_set(error, path[0] == '\0' ? "has no name" : "is not a directory");
+    const char *problem = directory->path != NULL ? obstacle(directory->path, &directory->existed) : NULL;
+    if (problem != NULL) {
+        error_text_set(error, "%s", problem);
         return false;
     }
     if (directory->path != NULL && make_temporary(directory))

@@ -5,17 +5,15 @@
 #include "input_list.h"
 #include "map_table.h"
 #include "options.h"
+#include "process.h"
 #include "progress.h"
 #include "report.h"
 #include "summary.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define PROGRAM "tapemark-decode"
 
@@ -279,22 +277,11 @@ static void release_run(decode_run *run)
     free(run->result.finders);
 }
 
-/* A file opened later must not end up where standard output or standard error should be. */
-static bool fill_descriptors(void)
-{
-    bool output_open = fcntl(STDOUT_FILENO, F_GETFD) >= 0;
-    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
-        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-            return false;
-    return output_open;
-}
-
 int main(int argc, char *argv[])
 {
     decode_run run = {0};
     error_text error;
-    signal(SIGPIPE, SIG_IGN);
-    if (!fill_descriptors()) {
+    if (!process_prepare()) {
         print_error("standard output", "is closed");
         return EXIT_BAD_INPUT;
     }

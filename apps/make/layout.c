@@ -2,6 +2,7 @@
 
 #include "tm_codes.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { NO_TM = 0 };
@@ -183,10 +184,13 @@ static bool refuse_codes(laying *all)
 {
     double covered_m = tape_m(all, true);
     double codeless_m = (double)all->layout->codeless_cms * PLAN_CM_MODULES * all->wanted->module_mm / 1000;
-    error_text_set(all->error, "codes of %d to %u CMs cover %.1f m of the %.1f m wanted; allow longer TMs "
-                   "(tm_cms_max, now %u, up to %d), or leave tm_cms_max out for CMs that stand alone",
-                   TAPEMARK_TM_MIN_CMS, all->wanted->tm_cms_max, covered_m, covered_m + codeless_m,
-                   all->wanted->tm_cms_max, TAPEMARK_TM_MAX_CMS);
+    unsigned longest = all->wanted->tm_cms_max;
+    char remedy[80] = "";
+    if (longest < TAPEMARK_TM_MAX_CMS)
+        snprintf(remedy, sizeof remedy, "allow longer TMs (tm_cms_max, now %u, up to %d), or ", longest,
+                 TAPEMARK_TM_MAX_CMS);
+    error_text_set(all->error, "codes of %d to %u CMs cover %.1f m of the %.1f m wanted; %sleave tm_cms_max out for "
+                   "CMs that stand alone", TAPEMARK_TM_MIN_CMS, longest, covered_m, covered_m + codeless_m, remedy);
     return false;
 }
 

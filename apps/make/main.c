@@ -5,14 +5,12 @@
 #include "map_ids.h"
 #include "output_directory.h"
 #include "print.h"
+#include "process.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define PROGRAM "tapemark-make"
 
@@ -243,20 +241,13 @@ static int run_program(int argc, char *argv[], make_run *run)
     return make_all(run);
 }
 
-/* A file opened later must not end up where standard output or standard error should be. */
-static void fill_descriptors(void)
-{
-    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
-        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-            _exit(EXIT_BAD_INPUT);
-}
-
 int main(int argc, char *argv[])
 {
     make_run run = {0};
-    fill_descriptors();
-    signal(SIGPIPE, SIG_IGN);
-    signal(SIGXFSZ, SIG_IGN);
+    if (!process_prepare()) {
+        print_error("standard output", "is closed");
+        return EXIT_BAD_INPUT;
+    }
     int status = run_program(argc, argv, &run);
     if (fflush(stdout) != 0 && status == EXIT_SUCCESS) {
         print_error("standard output", strerror(errno));

@@ -1,5 +1,6 @@
 #include "make_options.h"
 
+#include "id_ranges.h"
 #include "option_values.h"
 
 #include <getopt.h>
@@ -119,10 +120,10 @@ static const char *option_name(int code)
 
 /* ---- Single options ------------------------------------------------------------------------------------------ */
 
-static bool apply_whole(const char *argument, long least, long most, unsigned *number, error_text *error)
+static bool apply_whole(const char *argument, unsigned least, unsigned most, unsigned *number, error_text *error)
 {
-    long value;
-    if (!value_whole(argument, least, most, &value, error))
+    double value;
+    if (!parse_value(argument, (value_range){VALUE_WHOLE, least, most}, &value, error))
         return false;
     *number = (unsigned)value;
     return true;
@@ -130,9 +131,9 @@ static bool apply_whole(const char *argument, long least, long most, unsigned *n
 
 static bool apply_module(const char *argument, double modules, plan *quick, error_text *error)
 {
+    const double least_m = PLAN_MODULE_MIN_MM * modules / 1000, most_m = PLAN_MODULE_MAX_MM * modules / 1000;
     double length_m;
-    if (!value_length_m(argument, PLAN_MODULE_MIN_MM * modules / 1000, PLAN_MODULE_MAX_MM * modules / 1000, &length_m,
-                        error))
+    if (!parse_value(argument, (value_range){VALUE_LENGTH, least_m, most_m}, &length_m, error))
         return false;
     quick->module_mm = length_m * 1000 / modules;
     return true;
@@ -150,10 +151,11 @@ static bool apply_first_id(const char *argument, plan *quick, error_text *error)
 /* What a tape without a plan is like. */
 static bool apply_quick(int code, const char *argument, make_options *options, error_text *error)
 {
+    const value_range line = {VALUE_LENGTH, PLAN_MODULE_MIN_MM / 1000, PLAN_SIDE_MAX_M};
     plan *quick = &options->quick;
     switch (code) {
     case OPTION_LINE:
-        return value_length_m(argument, PLAN_MODULE_MIN_MM / 1000, PLAN_SIDE_MAX_M, &options->quick_length_m, error);
+        return parse_value(argument, line, &options->quick_length_m, error);
     case OPTION_CMS:
         return apply_whole(argument, 1, QUICK_CMS_MAX, &quick->cms_wanted, error);
     case OPTION_HEIGHT:
@@ -175,8 +177,9 @@ static bool apply_quick(int code, const char *argument, make_options *options, e
 
 static bool apply_measured(const char *argument, print_settings *print, error_text *error)
 {
+    const value_range range = {VALUE_LENGTH, 0.9 * RULER_MM / 1000, 1.1 * RULER_MM / 1000};
     double measured_m;
-    if (!value_length_m(argument, 0.9 * RULER_MM / 1000, 1.1 * RULER_MM / 1000, &measured_m, error))
+    if (!parse_value(argument, range, &measured_m, error))
         return false;
     print->scale_x = print->scale_y = RULER_MM / 1000 / measured_m;
     return true;
@@ -185,7 +188,7 @@ static bool apply_measured(const char *argument, print_settings *print, error_te
 static bool apply_scale(int code, const char *argument, print_settings *print, error_text *error)
 {
     double factor;
-    if (!value_percent(argument, 0.9, 1.1, &factor, error))
+    if (!parse_value(argument, (value_range){VALUE_PERCENT, 0.9, 1.1}, &factor, error))
         return false;
     print->scale_x = code != OPTION_SCALE_Y ? factor : print->scale_x;
     print->scale_y = code != OPTION_SCALE_X ? factor : print->scale_y;
@@ -196,12 +199,13 @@ static bool apply_paper(const char *argument, print_settings *print, error_text 
 {
     if (print_paper_parse(argument, &print->paper))
         return true;
-    error_text_set(error, "expected a4, a3, letter or roll, not '%.40s'", argument);
+    error_text_set(error, "expected a4, a3, letter or roll, not \"%.40s\"", argument);
     return false;
 }
 
 static bool apply_print(int code, const char *argument, make_options *options, error_text *error)
 {
+    const value_range dpi = {VALUE_NUMBER, 1, DPI_MAX};
     switch (code) {
     case OPTION_PAPER:
         return apply_paper(argument, &options->print, error);
@@ -212,11 +216,11 @@ static bool apply_print(int code, const char *argument, make_options *options, e
     case OPTION_SCALE_Y:
         return apply_scale(code, argument, &options->print, error);
     case OPTION_ONLY:
-        return value_id_ranges(argument, &options->only, &options->print.only_count, error);
+        return parse_id_ranges(argument, &options->only, &options->print.only_count, error);
     case OPTION_PNG:
-        return value_number(argument, 1, DPI_MAX, &options->png_dpi, error);
+        return parse_value(argument, dpi, &options->png_dpi, error);
     case OPTION_PGM:
-        return value_number(argument, 1, DPI_MAX, &options->pgm_dpi, error);
+        return parse_value(argument, dpi, &options->pgm_dpi, error);
     case OPTION_SVG:
         options->svg = true;
         return true;
@@ -235,13 +239,13 @@ static bool apply_print(int code, const char *argument, make_options *options, e
 static bool apply_option(int code, char *argument, option_set set, make_options *options, error_text *error)
 {
     error_text reason;
+    if (code == 'o' ? options->output_path != NULL : given(set, code)) {
+        error_text_set(error, "--%s is given twice", option_name(code));
+        return false;
+    }
     if (code == 'o') {
         options->output_path = argument;
         return true;
-    }
-    if (given(set, code)) {
-        error_text_set(error, "--%s is given twice", option_name(code));
-        return false;
     }
     set[code - OPTION_LINE] = true;
     if (code < OPTION_PAPER ? apply_quick(code, argument, options, &reason)

@@ -1,10 +1,10 @@
 /* tapemark-render: what a camera sees of tapes and other markers, with the truth about it. */
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "frame_output.h"
 #include "output_file.h"
+#include "process.h"
 #include "render_options.h"
 #include "scene.h"
 #include "stage.h"
@@ -51,7 +51,8 @@ static bool write_frames(render_run *run, error_text *error)
 {
     static scene_truth truth;
     for (size_t frame = 0; frame < run->here.frame_count; frame++) {
-        stage_show(&run->here, frame);
+        if (!stage_show(&run->here, frame, error))
+            return false;
         if (!render(run, &truth)) {
             error_text_set(error, "not enough memory for frames of %d x %d px", (int)run->here.view.width_px,
                            (int)run->here.view.height_px);
@@ -153,7 +154,10 @@ static int answer(int argc, char *argv[], render_options *all)
 int main(int argc, char *argv[])
 {
     static render_options all;
-    signal(SIGPIPE, SIG_IGN);
+    if (!process_prepare()) {
+        error_text error = {"standard output: is closed"};
+        return fail(EXIT_BAD_INPUT, &error);
+    }
     int status = answer(argc, argv, &all);
     render_options_release(&all);
     return status;

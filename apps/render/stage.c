@@ -144,14 +144,24 @@ static void move_along_path(stage *here)
     };
 }
 
-void stage_show(stage *here, size_t frame)
+/* Paths may jump further during an exposure than can be rendered. */
+static bool can_be_rendered(const stage *here, size_t frame, error_text *error)
+{
+    const char *problem = scene_problem(&here->view);
+    if (problem != NULL)
+        error_text_set(error, "%.150s: frame %zu, at %.10g s: %s", here->all->path_path, frame, here->time_s,
+                       problem);
+    return problem == NULL;
+}
+
+bool stage_show(stage *here, size_t frame, error_text *error)
 {
     const render_options *all = here->all;
     here->time_s = (double)frame / all->fps;
     if (all->kind == RENDER_WALK) {
         walk_to(&here->way, (int)frame, (int)here->frame_count);
         here->view = here->way.view;
-        return;
+        return true;
     }
     here->view.seed = all->view.seed + frame;
     if (here->path.count > 0) {
@@ -162,6 +172,7 @@ void stage_show(stage *here, size_t frame)
     }
     if (all->covered_share > 0)
         stage_cover(here, frame);
+    return here->path.count == 0 || can_be_rendered(here, frame, error);
 }
 
 void stage_close(stage *here)

@@ -31,8 +31,9 @@ typedef struct stage {
  * closes the stage in both cases. */
 bool stage_open(stage *here, const render_options *all, error_text *error);
 
-/* Sets `view` and `time_s` for a frame, 0 to frame_count - 1. */
-void stage_show(stage *here, size_t frame);
+/* Sets `view` and `time_s` for a frame, 0 to frame_count - 1. False when a path makes the camera do there what cannot
+ * be rendered. */
+bool stage_show(stage *here, size_t frame, error_text *error);
 
 void stage_close(stage *here);
 

@@ -164,9 +164,9 @@ static void segments_are_checked(void **state)
                  "segments[2]: is not \"complete\", so \"cms\" needs 1 to 3 code markers, not 0");
     expect_error("\"code\":\"100\",", "\"code\":\"100\",\"complete\":false,",
                  "segments[0]: is not \"complete\", so \"cms\" needs 1 to 2 code markers, not 3");
+    expect_error("\"code\":\"1110\",", "", "segments[2]: has no \"code\", so it cannot be incomplete");
     expect_error("\"complete\":false", "\"complete\":0", "segments[2]: \"complete\" must be true or false");
     expect_error("\"code\":\"1110\"", "\"code\":\"1111\"", "segments[2].cms[1]: the id -7 is dark");
-    expect_error("\"code\":\"1110\",", "", "segments[2]: \"cms\" has 2 code markers");
     expect_error("\"direction_deg\":90", "\"direction_deg\":270",
                  "segments[1]: \"direction_deg\" is 270.00, but from \"start\" "
                  "to \"end\" it is 90.00");

@@ -21,14 +21,14 @@ run 0 --version
 expect_refusal 2 'no INPUT'
 expect_refusal 2 "'--frobnicate'" --frobnicate a.pgm
 expect_refusal 2 "'-x'" -x a.pgm
-expect_refusal 2 '--format is jsonl, csv or text' --format xml a.pgm
+expect_refusal 2 '--format: expected one of jsonl csv text, not "xml"' --format xml a.pgm
 expect_refusal 2 '--raw: unknown pixel format' --raw RGB:4x4 a.raw
 expect_refusal 2 '--raw: expected FORMAT' --raw GREY:4 a.raw
-expect_refusal 2 '--roll needs a number from -360 to 360' --roll north a.pgm
-expect_refusal 2 '--vote-min needs a number' --vote-min 0.5 a.pgm
-expect_refusal 2 '--confidence-min needs a number' --confidence-min nan a.pgm
-expect_refusal 2 '--max-id needs a whole number from 1 to 1505582' --max-id -3 a.pgm
-expect_refusal 2 '--budget needs a whole number' --budget 4294967296 a.pgm
+expect_refusal 2 '--roll: expected a number from -360 to 360' --roll north a.pgm
+expect_refusal 2 '--vote-min: expected a number' --vote-min 0.5 a.pgm
+expect_refusal 2 '--confidence-min: expected a number' --confidence-min nan a.pgm
+expect_refusal 2 '--max-id: expected a whole number from 1 to 1505582' --max-id -3 a.pgm
+expect_refusal 2 '--budget: expected a whole number' --budget 4294967296 a.pgm
 expect_refusal 2 '--map needs a value' --map
 
 # ---- Formats of output ----------------------------------------------------------------------------------------

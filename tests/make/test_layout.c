@@ -257,6 +257,22 @@ static void a_promise_ends_where_all_codes_are_used(void **state)
     }
 }
 
+/* Lines that are too short are not helped by longer TMs. */
+static void the_longest_tms_cannot_be_longer(void **state)
+{
+    static const double lines[3] = {102, 102, 102};
+    error_text error;
+    tape_layout layout;
+    (void)state;
+    plan wanted = plan_of_modules(lines, 3);
+    wanted.tm_cms = 3;
+    wanted.tm_cms_max = TAPEMARK_TM_MAX_CMS;
+    wanted.tm_required = true;
+    assert_false(layout_make(&wanted, &layout, &error));
+    assert_non_null(strstr(error.text, "wanted; leave tm_cms_max out"));
+    plan_release(&wanted);
+}
+
 static void all_ids_are_laid_in_no_time(void **state)
 {
     double lines[150];
@@ -291,6 +307,7 @@ int main(void)
         cmocka_unit_test(so_many_cms_as_are_wanted),
         cmocka_unit_test(ten_cms_a_tm_cover_two_kilometres),
         cmocka_unit_test(a_promise_ends_where_all_codes_are_used),
+        cmocka_unit_test(the_longest_tms_cannot_be_longer),
         cmocka_unit_test(all_ids_are_laid_in_no_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

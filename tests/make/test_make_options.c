@@ -103,24 +103,32 @@ static void lengths_have_units(void **state)
         assert_true(about(options.quick_length_m, cases[i].length_m));
         make_options_release(&options);
     }
-    static const char *const wrong[] = {"3.2", "m", "-3m", "+3m", "0x10m", "infm", "nanm", "1e3m", "3,2m", "3.2km",
+    static const char *const wrong[] = {"3.2", "m", "-3m", "0x10m", "infm", "nanm", "1e3m", "3,2m", "3.2km",
                                         "3.2mm5", "3.2.1m", "3.2M"};
     for (size_t i = 0; i < COUNT_OF(wrong); i++) {
         char line[60];
         snprintf(line, sizeof line, "--line %s -o o", wrong[i]);
-        expect_wrong(line, "--line: expected a length with its unit (m, cm, mm or in), such as 3.2m, not '");
+        expect_wrong(line, "--line: expected a length in m, cm, mm or in from 0.0001m to 2500m, not \"");
     }
-    expect_wrong("--line 0m -o o", "--line: 0m is out of range, 0.0001m to 2500m");
-    expect_wrong("--line 2501m -o o", "is out of range");
-    expect_wrong("--line 99999999999999999999999999999999999999999m -o o", "is out of range");
-    expect_wrong("--cms 1 -o o --module 0.0086mm", "--module: 0.0086mm is out of range, 0.1mm to 150mm");
-    expect_wrong("--cms 1 -o o --height 1.06m", "--height: 1.06m is out of range, 0.0007m to 1.05m");
+    static const char *const bounds[] = {"--height 0.7mm", "--height 1050mm", "--module 0.1mm", "--module 15cm",
+                                         "--measured 90mm", "--measured 11cm", "--scale 90%", "--scale 110%"};
+    for (size_t i = 0; i < COUNT_OF(bounds); i++) {
+        char line[60];
+        snprintf(line, sizeof line, "%s --cms 1 -o o", bounds[i]);
+        make_options options = parse_right(line);
+        make_options_release(&options);
+    }
+    expect_wrong("--line 0m -o o", "--line: expected a length in m, cm, mm or in from 0.0001m to 2500m, not \"0m\"");
+    expect_wrong("--line 2501m -o o", "from 0.0001m to 2500m");
+    expect_wrong("--line 99999999999999999999999999999999999999999m -o o", "from 0.0001m to 2500m");
+    expect_wrong("--cms 1 -o o --module 0.0086mm", "from 0.1mm to 150mm, not \"0.0086mm\"");
+    expect_wrong("--cms 1 -o o --height 1.06m", "from 0.0007m to 1.05m, not \"1.06m\"");
 }
 
 static void numbers_have_ranges(void **state)
 {
     (void)state;
-    expect_wrong("--cms 0 -o o", "--cms: expected a whole number from 1 to 100000, not '0'");
+    expect_wrong("--cms 0 -o o", "--cms: expected a whole number from 1 to 100000, not \"0\"");
     expect_wrong("--cms 100001 -o o", "--cms: expected a whole number");
     expect_wrong("--cms 1.5 -o o", "--cms: expected a whole number");
     expect_wrong("--cms six -o o", "--cms: expected a whole number");
@@ -130,13 +138,13 @@ static void numbers_have_ranges(void **state)
     expect_wrong("--cms 1 --tm-cms 2 -o o", "--tm-cms: expected a whole number from 3 to 32");
     expect_wrong("--cms 1 --tm-cms 33 -o o", "--tm-cms: expected");
     expect_wrong("--cms 1 --tm-cms 8 --tm-cms-max 7 -o o", "--tm-cms-max 7 is less than the 8 CMs of --tm-cms");
-    expect_wrong("--cms 1 -o o --scale 100", "--scale: expected 90% to 110%, such as 100.3%, not '100'");
-    expect_wrong("--cms 1 -o o --scale-y 1003%", "--scale-y: expected 90% to 110%");
+    expect_wrong("--cms 1 -o o --scale 100", "--scale: expected a percentage from 90% to 110%, not \"100\"");
+    expect_wrong("--cms 1 -o o --scale-y 1003%", "--scale-y: expected a percentage from 90% to 110%");
     expect_wrong("--cms 1 -o o --measured 10cm5", "--measured: expected a length");
-    expect_wrong("--cms 1 -o o --measured 9.94mm", "--measured: 9.94mm is out of range, 90mm to 110mm");
-    expect_wrong("--cms 1 -o o --png 0", "--png: expected a number from 1 to 4800, not '0'");
+    expect_wrong("--cms 1 -o o --measured 9.94mm", "from 90mm to 110mm, not \"9.94mm\"");
+    expect_wrong("--cms 1 -o o --png 0", "--png: expected a number from 1 to 4800, not \"0\"");
     expect_wrong("--cms 1 -o o --pgm 300dpi", "--pgm: expected a number");
-    expect_wrong("--cms 1 -o o --paper a5", "--paper: expected a4, a3, letter or roll, not 'a5'");
+    expect_wrong("--cms 1 -o o --paper a5", "--paper: expected a4, a3, letter or roll, not \"a5\"");
 }
 
 static void ranges_of_ids(void **state)
@@ -166,6 +174,7 @@ static void options_that_do_not_go_together(void **state)
     expect_wrong("--cms 3 -o o --scale 101% --measured 99mm", "--measured and --scale say the same");
     expect_wrong("--cms 3 -o o --scale 101% --scale-y 101%", "--scale and --scale-y say the same");
     expect_wrong("--cms 3 --cms 4 -o o", "--cms is given twice");
+    expect_wrong("--cms 3 -o a --output b", "--output is given twice");
     expect_wrong("--cms", "--cms needs a value");
     expect_wrong("--cms 3 -o", "-o needs a value");
     expect_wrong("--frobnicate", "option '--frobnicate' is unknown");

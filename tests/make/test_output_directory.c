@@ -171,7 +171,10 @@ static void places_that_cannot_be(void **state)
     expect_refusal("file", "is not a directory");
     expect_refusal("nowhere/new", "cannot be made: No such file or directory");
     expect_refusal("file/new", "cannot be made: Not a directory");
-    assert_int_equal(count_entries("."), 1);
+    assert_int_equal(symlink("nowhere", "link"), 0);
+    expect_refusal("link", "is a link to nothing");
+    expect_refusal("link/", "is a link to nothing");
+    assert_int_equal(count_entries("."), 2);
 }
 
 static void messages_name_the_final_place(void **state)

@@ -239,49 +239,20 @@ static int compare_tms(const void *a, const void *b)
     return compare_places(((const tapemark_tm *)a)->corners, ((const tapemark_tm *)b)->corners);
 }
 
-static void add_markers(const raster *picture, int32_t begin_px, int32_t end_px, readings *read)
+void read_markers(const raster *picture, readings *read)
 {
-    tapemark_image image = {picture->pixels + begin_px, end_px - begin_px, picture->height_px, picture->width_px};
+    tapemark_image image = {picture->pixels, picture->width_px, picture->height_px, picture->width_px};
     size_t workspace_size = tapemark_workspace_bytes(image.width_px, image.height_px);
     void *workspace = malloc(workspace_size);
     assert_non_null(workspace);
-    tapemark_result result = {.cms = read->cms + read->cm_count, .cm_capacity = CMS_MAX - read->cm_count,
-                              .tms = read->tms + read->tm_count, .tm_capacity = TMS_MAX - read->tm_count};
+    tapemark_result result = {.cms = read->cms, .cm_capacity = CMS_MAX, .tms = read->tms, .tm_capacity = TMS_MAX};
     tapemark_status status = tapemark_decode(&image, NULL, workspace, workspace_size, &result);
     assert_true(status == TAPEMARK_OK || status == TAPEMARK_NOTHING_FOUND);
     free(workspace);
-    for (size_t i = 0; i < 4; i++) {
-        for (size_t k = 0; k < result.cm_count; k++)
-            result.cms[k].corners[i].x_px += (float)begin_px;
-        for (size_t k = 0; k < result.tm_count; k++)
-            result.tms[k].corners[i].x_px += (float)begin_px;
-    }
-    read->cm_count += result.cm_count;
-    read->tm_count += result.tm_count;
-}
-
-static void sort_markers(readings *read)
-{
+    read->cm_count = result.cm_count;
+    read->tm_count = result.tm_count;
     qsort(read->cms, read->cm_count, sizeof *read->cms, compare_cms);
     qsort(read->tms, read->tm_count, sizeof *read->tms, compare_tms);
-}
-
-void read_markers(const raster *picture, readings *read)
-{
-    read->cm_count = read->tm_count = 0;
-    add_markers(picture, 0, picture->width_px, read);
-    sort_markers(read);
-}
-
-void read_markers_in_parts(const raster *picture, double begin_px, double part_px, size_t part_count, readings *read)
-{
-    read->cm_count = read->tm_count = 0;
-    for (size_t i = 0; i < part_count; i++) {
-        double end_px = fmin(begin_px + part_px, picture->width_px);
-        add_markers(picture, (int32_t)lround(begin_px), (int32_t)lround(end_px), read);
-        begin_px = end_px;
-    }
-    sort_markers(read);
 }
 
 static void assert_upright(const tapemark_point corners[4])

@@ -95,10 +95,6 @@ typedef struct readings {
 /* What the decoder reads, CMs and TMs in rows from top to bottom, and from left to right within a row. */
 void read_markers(const raster *picture, readings *read);
 
-/* The same in parts of equal width side by side, which a long roll is looked at in: a frame that shows more CMs in a
- * row than the longest TM has is beyond what the decoder promises. No marker may lie on two parts. */
-void read_markers_in_parts(const raster *picture, double begin_px, double part_px, size_t part_count, readings *read);
-
 /* Segment `index` of the tape against what was read: its CMs from `*next_cm` on, its TM from `*next_tm` on, in the
  * right order, upright, and with the direction known. Both counts go on. */
 void assert_reads_segment(const hand_tape *tape, size_t index, const readings *read, size_t *next_cm,

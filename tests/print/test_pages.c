@@ -189,9 +189,7 @@ static void two_metres_of_roll(void **state)
     raster *roll = &pages.items[0];
     assert_white_margins(roll, 3);
     assert_near(ruler_length_mm(roll), 100.1, 0.1);
-    /* Marks and margin come before the tape. */
-    double tms_px = 2 * 177 * 1.85 * roll->px_per_mm;
-    read_markers_in_parts(roll, 5.5 * roll->px_per_mm, tms_px, 3, &read);
+    read_markers(roll, &read);
     assert_reads_all(&tape, &read);
     for (size_t i = 0; i < read.tm_count; i++)
         assert_modules(roll, tape.layout.ids + 6 * i, 6, true, read.tms[i].corners);

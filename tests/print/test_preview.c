@@ -171,6 +171,36 @@ static void rooms_of_every_shape_are_drawn(void **state)
     }
 }
 
+/* Near a row, in a column. */
+static bool is_dark_near(const raster *picture, double x_px, double y_px)
+{
+    bool dark = false;
+    for (int i = -2; i <= 2; i++)
+        dark = dark || raster_at(picture, x_px, y_px + i) < 160;
+    return dark;
+}
+
+/* The scale stands below the room at the left, the summary at the right, also where the room is high and narrow. */
+static void the_scale_leaves_room_for_the_summary(void **state)
+{
+    const double px_per_mm = 5, margin_mm = 11, below_mm = 9, end_mm = 0.5, summary_mm = 66;
+    static const double shapes[][2] = {{0.1, 2500}, {1.5, 40}, {1, 1}, {6, 4}};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(shapes); i++) {
+        hand_tape tape = small_room();
+        tape.wanted.width_m = shapes[i][0];
+        tape.wanted.height_m = shapes[i][1];
+        raster picture = preview_of(&tape);
+        double row_px = picture.height_px - below_mm * px_per_mm, x_px = (margin_mm + end_mm) * px_per_mm;
+        assert_true(is_dark_near(&picture, x_px, row_px));
+        while (x_px < picture.width_px && is_dark_near(&picture, x_px, row_px))
+            x_px++;
+        assert_true(x_px / px_per_mm < picture.width_px / px_per_mm - margin_mm - summary_mm);
+        raster_release(&picture);
+        hand_tape_release(&tape);
+    }
+}
+
 /* Two thousand lines with a TM each. */
 static void many_lines_are_drawn_in_time(void **state)
 {
@@ -202,6 +232,7 @@ int main(void)
         cmocka_unit_test(an_unreadable_background_is_told),
         cmocka_unit_test(a_preview_that_cannot_be_written_is_told),
         cmocka_unit_test(rooms_of_every_shape_are_drawn),
+        cmocka_unit_test(the_scale_leaves_room_for_the_summary),
         cmocka_unit_test(many_lines_are_drawn_in_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

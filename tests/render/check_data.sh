@@ -1,9 +1,10 @@
 #!/bin/sh
 # usage: check_data.sh DATA_DIRECTORY tapemark-render tapemark-make picture_pixels
 #
-# Runs the tapemark-render and tapemark-make commands in the README of the data directory again, in a directory of their
-# own, and compares: every file there is must come out as it is, pictures pixel by pixel. Another compiler or C library
-# may round a value the other way, so one byte in a thousand may differ.
+# Runs the tapemark-render and tapemark-make commands in the README of the data directory again, in a directory of
+# their own, and compares: every file there is must come out as it is, pictures pixel by pixel. Another compiler or C
+# library may round a value the other way, so one byte in a thousand may differ; and of the plan's picture, letters in
+# other fonts: one in twenty.
 set -eu
 
 data=$(cd "$1" && pwd)
@@ -75,6 +76,10 @@ for kept in "$data"/*; do
         continue
     fi
     different=$(cmp -l kept.bytes made.bytes | wc -l)
-    [ $((different * 1000)) -le "$size" ] || complain "data/$name: $different of $size bytes come out differently"
+    case $name in
+    plan-preview.png) one_in=20 ;;
+    *) one_in=1000 ;;
+    esac
+    [ $((different * one_in)) -le "$size" ] || complain "data/$name: $different of $size bytes come out differently"
 done
 [ "$failures" -eq 0 ]

@@ -57,6 +57,11 @@ printf 'P5\n100 100\n255\nshort' >given/short.pgm
 expect_refusal 1 'given/short.pgm: ' --picture given/short.pgm:60mm -o a.pgm
 printf 'time_s,x_m,y_m,height_m,heading_deg\n0,1,2,1,-90\n900000,2,2,1,-90\n' >given/long.csv
 expect_refusal 1 'lower --fps, or limit --frames' --map given/map.json --path given/long.csv -o a.y4m
+printf 'time_s,x_m,y_m,height_m,heading_deg\n0,1,2,1,-90\n1,1,2,1,-90\n1.001,1,2,1,60\n2,1,2,1,60\n' >given/jump.csv
+expect_refusal 1 'given/jump.csv: frame 1, at 1 s: the camera turns by more than 90 degrees during the exposure' \
+    --map given/map.json --path given/jump.csv --fps 1 --shutter 10ms -o a.y4m
+expect_refusal 1 'the readout is out of range, 0 to 1000 exposures' --map given/map.json --path given/way.csv \
+    --shutter 0.001ms --readout 10s -o a.y4m
 expect_refusal 1 'none/a.pgm: cannot be written: No such file or directory' -o none/a.pgm
 expect_refusal 1 'given: is a directory' --format PGM -o given
 for format in PGM PNG Y4M NV12; do
@@ -65,9 +70,14 @@ done
 expect_refusal 1 '/dev/full: cannot be written' --truth /dev/full -o a.pgm
 expect_refusal 1 'none/t: cannot be written' --truth none/t -o a.pgm
 nothing_left
+got=0
+"$program" --truth - -o a.pgm >&- 2>err || got=$?
+[ "$got" -eq 1 ] || fail 'closed standard output'
+expect err 'tapemark-render: standard output: is closed'
+nothing_left
 if (ulimit -f 1 && ! dd if=/dev/zero of=given/big bs=4096 count=64 2>/dev/null); then
     # A limit of a block or so of file size stands for a disk that fills up while frames are written.
-    (trap '' XFSZ && ulimit -f 100 && expect_refusal 1 'a-000' --frames 4 --size 320x240 -o a.pgm && : >given/limited)
+    (ulimit -f 100 && expect_refusal 1 'a-000' --frames 4 --size 320x240 -o a.pgm && : >given/limited)
     [ -f given/limited ] || fail 'a limited file was written'
     nothing_left
 fi

@@ -339,11 +339,19 @@ static bool draw_tape(preview *view, error_text *error)
 
 /* ---- Below the room ------------------------------------------------------------------------------------ */
 
+/* Between the margins; small rooms have room for the texts below them, too. */
+static double content_width_mm(const preview *view)
+{
+    return fmax(view->room_width_mm, 110);
+}
+
+/* Short enough for the summary beside it. */
 static void draw_scale_bar(const preview *view, double y_mm)
 {
     const drawing_font font = {TEXT_MM, false, DRAWING_LEFT, 0};
-    double longest_m = fmax(view->wanted->width_m, view->wanted->height_m);
-    double bar_m = round_length_m(longest_m / 5), end_mm = MARGIN_MM + bar_m * view->mm_per_m, tick_mm = 0.8;
+    double longest_mm = fmax(view->room_width_mm, view->room_height_mm);
+    double bar_m = round_length_m(fmin(longest_mm / 5, 0.3 * content_width_mm(view)) / view->mm_per_m);
+    double end_mm = MARGIN_MM + bar_m * view->mm_per_m, tick_mm = 0.8;
     char text[32];
     snprintf(text, sizeof text, "%.4g m", bar_m);
     drawing_set_colour(view->page, wall_colour);
@@ -380,7 +388,7 @@ static bool draw_all(preview *view, error_text *error)
         return false;
     double y_mm = 2 * MARGIN_MM + view->room_height_mm;
     draw_scale_bar(view, y_mm);
-    draw_summary(view, fmax(view->room_width_mm, 110) + MARGIN_MM, y_mm);
+    draw_summary(view, content_width_mm(view) + MARGIN_MM, y_mm);
     return true;
 }
 
@@ -388,7 +396,7 @@ bool print_preview(const plan *wanted, const tape_layout *layout, const char *pa
 {
     preview view = {.wanted = wanted, .layout = layout};
     choose_scale(&view);
-    double width_mm = fmax(view.room_width_mm, 110) + 2 * MARGIN_MM;
+    double width_mm = content_width_mm(&view) + 2 * MARGIN_MM;
     double height_mm = view.room_height_mm + 2 * MARGIN_MM + FOOTER_MM;
     if (!taken_area_init(&view.taken, width_mm, height_mm)) {
         error_text_set(error, "not enough memory for a picture of the plan");

@@ -1,7 +1,8 @@
-/* Values on the command line: numbers, lengths and times with their units, and lists of them. Each function tells in
- * the error what would be right; the caller puts the option's name in front. */
-#ifndef RENDER_OPTION_VALUES_H
-#define RENDER_OPTION_VALUES_H
+/* Values on the command line: numbers, lengths, times and percentages with their units, and lists of them. Numbers
+ * are decimal, without exponents. Each function tells in the error what would be right; the caller puts the option's
+ * name in front. */
+#ifndef OPTIONS_OPTION_VALUES_H
+#define OPTIONS_OPTION_VALUES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -12,8 +13,9 @@
 typedef enum value_kind {
     VALUE_NUMBER,
     VALUE_WHOLE,   /* a number without a fraction */
-    VALUE_LENGTH,  /* with a unit, mm, cm or m; given back in m */
-    VALUE_TIME     /* with a unit, ms or s; given back in s */
+    VALUE_LENGTH,  /* with a unit, m, cm, mm or in; given back in m */
+    VALUE_TIME,    /* with a unit, s or ms; given back in s */
+    VALUE_PERCENT  /* 100.3% is given back as 1.003 */
 } value_kind;
 
 typedef struct value_range {

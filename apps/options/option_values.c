@@ -13,39 +13,63 @@ typedef struct value_unit {
     double factor;
 } value_unit;
 
-enum { UNITS_MAX = 3 };
+enum { UNITS_MAX = 4 };
 
+/* The first unit is the one that values are given back in, but for percentages. */
 static const struct {
     const char *what;
-    value_unit units[UNITS_MAX];  /* the one that ranges are told in is the last; without a name: none */
+    value_unit units[UNITS_MAX];
 } kinds[] = {
     [VALUE_NUMBER] = {"a number", {{"", 1}}},
     [VALUE_WHOLE] = {"a whole number", {{"", 1}}},
-    [VALUE_LENGTH] = {"a length in mm, cm or m", {{"mm", 1e-3}, {"cm", 1e-2}, {"m", 1}}},
-    [VALUE_TIME] = {"a time in ms or s", {{"ms", 1e-3}, {"s", 1}}},
+    [VALUE_LENGTH] = {"a length in m, cm, mm or in", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"in", 0.0254}}},
+    [VALUE_TIME] = {"a time in s or ms", {{"s", 1}, {"ms", 1e-3}}},
+    [VALUE_PERCENT] = {"a percentage", {{"%", 1e-2}}},
 };
 
-/* The factor of the unit that the text is; 0 when it is none of them. */
-static double factor_of(value_kind kind, const char *text)
+/* A sign if need be, and digits with at most one point. Returns what follows, NULL when there is no such number. */
+static const char *read_decimal(const char *text, double *number)
+{
+    const char *digits = text + (*text == '-' || *text == '+');
+    size_t whole = strspn(digits, "0123456789");
+    size_t fraction = digits[whole] == '.' ? strspn(digits + whole + 1, "0123456789") : 0;
+    if (whole + fraction == 0)
+        return NULL;
+    *number = strtod(text, NULL);
+    return digits + whole + (digits[whole] == '.' ? 1 + fraction : 0);
+}
+
+/* NULL when the text is none of the kind's units. */
+static const value_unit *find_unit(value_kind kind, const char *text)
 {
     for (size_t i = 0; i < UNITS_MAX && kinds[kind].units[i].name != NULL; i++) {
         if (strcmp(kinds[kind].units[i].name, text) == 0)
-            return kinds[kind].units[i].factor;
+            return &kinds[kind].units[i];
     }
-    return 0;
+    return NULL;
+}
+
+/* The bounds belong to the range, also where a unit's factor rounds past them. */
+static bool take_within(double given, value_range range, double *value)
+{
+    const double rounding = 1e-12;
+    *value = fmin(fmax(given, range.least), range.most);
+    return fabs(given - *value) <= rounding * fabs(*value) && (range.kind != VALUE_WHOLE || *value == floor(*value));
 }
 
 bool parse_value(const char *text, value_range range, double *value, error_text *error)
 {
-    char *end;
-    double number = strtod(text, &end), factor = factor_of(range.kind, end);
-    *value = number * factor;
-    bool whole = range.kind != VALUE_WHOLE || *value == floor(*value);
-    if (end != text && factor > 0 && whole && *value >= range.least && *value <= range.most)
-        return true;
-    const char *unit = range.kind == VALUE_LENGTH ? " m" : range.kind == VALUE_TIME ? " s" : "";
-    error_text_set(error, "expected %s from %.10g to %.10g%s, not \"%.60s\"", kinds[range.kind].what, range.least,
-                   range.most, unit, text);
+    double number = 0;
+    const char *rest = read_decimal(text, &number);
+    const value_unit *unit = rest != NULL ? find_unit(range.kind, rest + strspn(rest, " ")) : NULL;
+    if (unit != NULL) {
+        if (take_within(number * unit->factor, range, value))
+            return true;
+    } else {
+        unit = kinds[range.kind].units;
+    }
+    error_text_set(error, "expected %s from %.10g%s to %.10g%s, not \"%.60s\"", kinds[range.kind].what,
+                   range.least / unit->factor, unit->name, range.most / unit->factor, unit->name, text);
     return false;
 }
 
@@ -54,9 +78,9 @@ bool parse_numbers(const char *text, size_t required, size_t count, double *numb
 {
     const char *at = text;
     for (size_t i = 0; i < count; i++) {
-        char *end;
-        double number = strtod(at, &end);
-        if (end == at || !isfinite(number) || (*end != ',' && *end != '\0'))
+        double number = 0;
+        const char *end = read_decimal(at, &number);
+        if (end == NULL || !isfinite(number) || (*end != ',' && *end != '\0'))
             break;
         numbers[i] = number;
         if (*end == '\0' && i + 1 >= required)
