@@ -236,6 +236,11 @@ static bool set_repeat(stream_settings *settings, const char *value, error_text 
     return parse_yes_or_no(value, &settings->repeat, error);
 }
 
+static bool set_still(stream_settings *settings, const char *value, error_text *error)
+{
+    return parse_yes_or_no(value, &settings->still, error);
+}
+
 static bool set_inverted(stream_settings *settings, const char *value, error_text *error)
 {
     bool inverted = false;
@@ -295,13 +300,13 @@ typedef bool setter(stream_settings *settings, const char *value, error_text *er
 
 static const char *const names[] = {
     "camera", "serial", "output", "map", "encoding", "format", "size", "rate", "exposure", "gain", "roi", "markers",
-    "gpio-seen", "gpio-strobe", "gpio-trigger", "snapshots", "preview", "record", "repeat", "inverted", "roll",
-    "max-id", "confidence-min", NULL};
+    "gpio-seen", "gpio-strobe", "gpio-trigger", "snapshots", "preview", "record", "repeat", "still", "inverted",
+    "roll", "max-id", "confidence-min", NULL};
 
 static setter *const setters[] = {
     set_camera, set_serial, set_output, set_map, set_encoding, set_format, set_size, set_rate, set_exposure, set_gain,
     set_roi, set_markers, set_gpio_seen, set_gpio_strobe, set_gpio_trigger, set_snapshots, set_preview, set_record,
-    set_repeat, set_inverted, set_roll, set_max_id, set_confidence_min};
+    set_repeat, set_still, set_inverted, set_roll, set_max_id, set_confidence_min};
 
 _Static_assert(sizeof names / sizeof *names == sizeof setters / sizeof *setters + 1, "a setter for each name");
 

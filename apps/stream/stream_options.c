@@ -31,6 +31,7 @@ const char stream_options_help[] =
     "  --preview PORT       a page with the live picture, on this computer alone; HOST:PORT for others, too\n"
     "  --record PATH        writes what the camera gives: PATH.y4m, or raw with its times beside it\n"
     "  --repeat yes         a recording begins again at its end\n"
+    "  --still yes          the camera's picture may stand still to the last bit, as a test pattern does\n"
     "\n"
     "  --inverted yes       the tape is printed light on dark\n"
     "  --roll DEG           upright tapes read in this direction, clockwise from the x axis of the image\n"
