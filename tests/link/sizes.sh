@@ -57,8 +57,9 @@ check()
     flash_limit=$2
     memory_limit=$3
     shift 3
-    "$compiler" -std=c99 -Os -ffunction-sections -fdata-sections -fstack-usage -Wall -Wextra -Wconversion -Werror \
-        "-I$link/src" "$@" -c "$link/src/tapemark_receiver.c" -o "$work/receiver.o"
+    "$compiler" -std=c99 -pedantic-errors -Wall -Wextra -Wconversion -Wshadow -Werror "-I$link/src" \
+        -Os -ffunction-sections -fdata-sections -fstack-usage "$@" -c "$link/src/tapemark_receiver.c" \
+        -o "$work/receiver.o"
     # Without hardware for it, floating point shows in the names of the compiler's helpers.
     if "${size%size}nm" -u "$work/receiver.o" | grep -E '[a-z][sd]f[0-9]?$|__aeabi_[fd]|alloc'; then
         echo "$name: that is floating point or heap"
