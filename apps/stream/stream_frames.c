@@ -100,8 +100,8 @@ void stream_take_frame(stream *self, const camera_frame *got)
     self->counts.frames++;
     self->last = *got;
     if (read_frame(self, got, &reading)) {
-        signal_lines_show_seen(&self->gpio, reading.result.cm_count + reading.result.tm_count > 0);
         send_reading(self, &reading, got);
+        signal_lines_show_seen(&self->gpio, reading.result.cm_count + reading.result.tm_count > 0);
         self->width_px = reading.view.width_px;
         self->height_px = reading.view.height_px;
         save_snapshot(self, &reading.view);
