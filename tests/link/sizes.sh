@@ -1,13 +1,14 @@
 #!/bin/sh
-# Usage: sizes.sh LINK_FOLDER CC SIZE FLAG...
+# Usage: sizes.sh PROCESSOR LINK_FOLDER CC SIZE FLAG...
 # What the receiver adds to a program for a microcontroller, with all that it pulls in from the compiler's libraries:
 # flash, memory, and the stack were all its functions to call each other. Held against limits a little above what the
 # page of the format says.
 set -eu
-link=$1
-compiler=$2
-size=$3
-shift 3
+processor=$1
+link=$2
+compiler=$3
+size=$4
+shift 4
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -71,7 +72,7 @@ check()
     set -- $(weigh "$work/with") $(weigh "$work/without")
     flash=$(($1 - $3))
     memory=$(($2 - $4))
-    echo "$name: flash $flash bytes, memory $memory bytes, stack below $(stack_bytes "$work/receiver.su") bytes"
+    echo "receiver, $processor, $name: flash $flash bytes, memory $memory bytes, stack below $(stack_bytes "$work/receiver.su") bytes"
     if [ "$flash" -gt "$flash_limit" ] || [ "$memory" -gt "$memory_limit" ] || [ "$flash" -lt 500 ]; then
         echo "$name: expected at most $flash_limit bytes of flash and $memory_limit of memory"
         status=1
