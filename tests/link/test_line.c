@@ -13,7 +13,7 @@ static size_t random_script(uint32_t *random, uint8_t script[SCRIPT_MAX])
     return size;
 }
 
-/* The bounds are what chance alone keeps to in all but one of a thousand repetitions with other numbers. */
+/* Of a million damaged packets, 0.6 pass the checks by chance; of sentences, fewer. */
 static void only_damaged_records_are_lost_and_none_is_made_up(void **state)
 {
     (void)state;
@@ -31,7 +31,7 @@ static void only_damaged_records_are_lost_and_none_is_made_up(void **state)
     assert_true(damaged > 2 * LINES);
     assert_int_equal(tally.lost, 0);
     assert_int_equal(tally.wrong[TAPEMARK_SENTENCES], 0);
-    assert_true(tally.wrong[TAPEMARK_PACKETS] <= 5);
+    assert_true(tally.wrong[TAPEMARK_PACKETS] <= 1);
 }
 
 /* The line itself: without damage, all that is sent is received. */
