@@ -97,8 +97,8 @@ static bool is_frozen(stream *self, const frame_reading *reading, const camera_f
 
 static void use_reading(stream *self, const frame_reading *reading, const camera_frame *got)
 {
-    signal_lines_show_seen(&self->gpio, reading->result.cm_count + reading->result.tm_count > 0);
     send_reading(self, reading, got);
+    signal_lines_show_seen(&self->gpio, reading->result.cm_count + reading->result.tm_count > 0);
     self->width_px = reading->view.width_px;
     self->height_px = reading->view.height_px;
     save_snapshot(self, &reading->view);

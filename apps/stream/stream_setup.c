@@ -143,7 +143,7 @@ static void adopt(stream *self, const stream_settings *fresh)
         set_light(self, fresh);
     if (strcmp(before.preview, fresh->preview) != 0)
         good = open_preview(self, fresh) && good;
-    if (!same_lines(&before.gpio, &fresh->gpio))
+    if (!same_lines(&before.gpio, &fresh->gpio) || !signal_lines_are_whole(&self->gpio, &fresh->gpio))
         signal_lines_open(&self->gpio, &fresh->gpio);
     if (good)
         message_tell(NULL, "settings and map were read again");

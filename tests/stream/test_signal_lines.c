@@ -138,11 +138,61 @@ static void line_that_fails_is_counted(void **state)
     signal_lines_open(&lines, &wanted);
     assert_int_equal(lines.failures, 1);
     assert_null(lines.strobe);
+    assert_false(signal_lines_are_whole(&lines, &wanted));
     fake.broken = true;
     signal_lines_show_seen(&lines, true);
     assert_int_equal(lines.failures, 2);
+    assert_int_equal(fake.closed, 1);
+    signal_lines_show_seen(&lines, true);
     signal_lines_close(&lines);
     assert_int_equal(lines.failures, 2);
+    assert_int_equal(fake.closed, 1);
+}
+
+static void trigger_that_fails_is_given_back_and_may_be_had_again(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings wanted = {.trigger = "0:6"};
+    signal_lines_open(&lines, &wanted);
+    assert_true(signal_lines_are_whole(&lines, &wanted));
+    fake.broken = true;
+    assert_false(signal_lines_triggered(&lines));
+    assert_false(signal_lines_triggered(&lines));
+    assert_int_equal(lines.failures, 1);
+    assert_int_equal(fake.closed, 1);
+    assert_int_equal(signal_lines_descriptor(&lines), -1);
+    assert_false(signal_lines_are_whole(&lines, &wanted));
+    fake.broken = false;
+    signal_lines_open(&lines, &wanted);
+    assert_true(signal_lines_are_whole(&lines, &wanted));
+    signal_lines_close(&lines);
+    assert_int_equal(lines.failures, 1);
+}
+
+/* It fails in its thread, and is given back with the next frame. */
+static void strobe_that_fails_is_given_back(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings wanted = {.strobe = "0:5"};
+    const int64_t now_ns = camera_clock_ns();
+    camera_frame got = {.image = {.time_ns = now_ns - 20 * ms}, .exposure_us = 2000};
+    signal_lines_open(&lines, &wanted);
+    fake.broken = true;
+    signal_lines_foretell(&lines, &got, now_ns);
+    got.image.time_ns = now_ns - 10 * ms;
+    signal_lines_foretell(&lines, &got, now_ns);
+    for (int i = 0; i < 100 && lines.failures == 0; i++) {
+        sleep_until(camera_clock_ns() + 20 * ms);
+        got.image.time_ns = FRAME_TIME_UNKNOWN;
+        signal_lines_foretell(&lines, &got, camera_clock_ns());
+    }
+    assert_int_equal(lines.failures, 1);
+    assert_int_equal(fake.closed, 1);
+    assert_null(lines.strobe);
+    signal_lines_close(&lines);
+    assert_int_equal(fake.closed, 1);
 }
 
 /* A frame every 100 ms, exposed for 20 ms; told 30 ms after the middle of its exposure. */
@@ -189,6 +239,8 @@ int main(void)
         cmocka_unit_test_setup(lines_that_are_not_named_cost_nothing, begin),
         cmocka_unit_test_setup(seen_is_shown_and_lines_are_given_back, begin),
         cmocka_unit_test_setup(line_that_fails_is_counted, begin),
+        cmocka_unit_test_setup(trigger_that_fails_is_given_back_and_may_be_had_again, begin),
+        cmocka_unit_test_setup(strobe_that_fails_is_given_back, begin),
         cmocka_unit_test_setup(strobe_is_on_around_the_next_exposure, begin),
         cmocka_unit_test_setup(strobe_ends_with_the_line_off, begin),
     };
