@@ -42,6 +42,14 @@ static bool fail(const char *what, const char *why)
     return false;
 }
 
+static bool holds(const picture_segment *segment, int32_t id)
+{
+    for (size_t i = 0; i < segment->cm_count; i++)
+        if (segment->ids[i] == id)
+            return true;
+    return false;
+}
+
 static bool reads_tape(const loop_check *check, const gray_view *view, uint32_t number)
 {
     tapemark_cm cms[16];
@@ -49,9 +57,11 @@ static bool reads_tape(const loop_check *check, const gray_view *view, uint32_t 
     tapemark_image image = {view->pixels, view->width_px, view->height_px, view->stride_bytes};
     tapemark_decode(&image, NULL, check->workspace, tapemark_workspace_bytes(view->width_px, view->height_px),
                     &result);
-    bool right = result.cm_count == PICTURE_CMS;
+    picture_segment tape = picture_tape(view->width_px, view->height_px, number);
+    picture_segment number_tape = picture_number_tape(view->width_px, number);
+    bool right = result.cm_count == tape.cm_count + number_tape.cm_count;
     for (size_t i = 0; i < result.cm_count; i++)
-        right = right && cms[i].id >= picture_first_id(number) && cms[i].id < picture_first_id(number) + PICTURE_CMS;
+        right = right && (holds(&tape, cms[i].id) || holds(&number_tape, cms[i].id));
     return right;
 }
 
