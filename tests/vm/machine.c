@@ -14,7 +14,7 @@
 
 enum { BOOT_MS = 90000, CONNECT_MS = 10000 };
 
-static int connect_to(const char *folder, const char *name)
+int machine_connect(const char *folder, const char *name)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     const int64_t deadline_ns = host_clock_ns() + CONNECT_MS * INT64_C(1000000);
@@ -80,8 +80,8 @@ static int read_answer(machine *board, int timeout_ms)
 bool machine_open(machine *board, const char *folder, pid_t usb_camera)
 {
     board->usb_camera = usb_camera;
-    board->control = connect_to(folder, "control");
-    board->line = (stream_host){.line = connect_to(folder, "line"), .device = -1, .said_pipe = -1};
+    board->control = machine_connect(folder, "control");
+    board->line = (stream_host){.line = machine_connect(folder, "line"), .device = -1, .said_pipe = -1};
     return board->control >= 0 && board->line.line >= 0 && read_answer(board, BOOT_MS) == 0;
 }
 

@@ -18,6 +18,9 @@ typedef struct machine {
     void *context;
 } machine;
 
+/* A socket in this folder, which may be about to appear; -1 when it does not. Reading does not wait. */
+int machine_connect(const char *folder, const char *name);
+
 /* Connects to the sockets `control` and `line` in this folder, and waits until the machine is up. `board` has what
  * takes the line. */
 bool machine_open(machine *board, const char *folder, pid_t usb_camera);

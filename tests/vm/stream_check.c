@@ -73,14 +73,15 @@ static void check_run(stream_session *session, const stream_run *run)
 
 static void check_vivid(stream_session *session)
 {
-    static const char *const formats[] = {"GREY", "YUYV", "NV12", "Y10"};
+    static const char *const layouts[] = {"GREY 640 480", "YUYV 640 480", "NV12 640 480", "Y10 640 480",
+                                          "GREY 1280 720"};
     char command[120], name[40];
     machine_do(&session->board, CAMERA_LOOP_MS,
                "load vivid n_devs=1 node_types=0x101 num_inputs=1 input_types=0x3 num_outputs=1 output_types=0x1; "
                "wait_for /dev/video1");
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
-        snprintf(name, sizeof name, "vivid %s, byte for byte", formats[i]);
-        snprintf(command, sizeof command, "camera_loop vivid /dev/video0 /dev/video1 %s 640 480 20", formats[i]);
+    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
+        snprintf(name, sizeof name, "vivid %s, byte for byte", layouts[i]);
+        snprintf(command, sizeof command, "camera_loop vivid /dev/video0 /dev/video1 %s 20", layouts[i]);
         session_command(session, name, CAMERA_LOOP_MS, command);
     }
     for (size_t i = 0; i < VIVID_RUNS; i++) {
