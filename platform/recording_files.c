@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 /* Keeps count of what is whole, so that the rest can be cut off. */
@@ -68,9 +68,12 @@ static bool write_all(const recording_files *files, int descriptor, const void *
     return true;
 }
 
-static int open_for_writing(const char *path)
+static int open_for_writing(const char *path, bool *created)
 {
-    return open(path, O_WRONLY | O_CREAT | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0644);
+    const int flags = O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+    int descriptor = open(path, flags | O_CREAT | O_EXCL, 0644);
+    *created = descriptor >= 0;
+    return descriptor < 0 && errno == EEXIST ? open(path, flags) : descriptor;
 }
 
 static void release(recording_files *files)
@@ -84,18 +87,38 @@ static void release(recording_files *files)
     free(files);
 }
 
-/* 0, or what errno was. What a former recording left is thrown away only when both can be written. */
-static int open_both(recording_files *files, const char *path, const char *times_path)
+/* The next two return 0, or what errno was. What a former recording left is thrown away only when both can be written,
+ * and nobody plays it or records to it: who does holds a lock. */
+static int open_times(recording_files *files, const char *times_path)
 {
-    files->frames.descriptor = open_for_writing(path);
-    if (files->frames.descriptor < 0)
-        return errno;
-    files->times.descriptor = open_for_writing(times_path);
+    bool ignored;
+    if (flock(files->frames.descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        return ETXTBSY;
+    files->times.descriptor = open_for_writing(times_path, &ignored);
     if (files->times.descriptor < 0)
         return errno;
     /* Pipes and devices have nothing to throw away. */
     bool emptied = ftruncate(files->frames.descriptor, 0) == 0 || errno == EINVAL;
     return emptied && ftruncate(files->times.descriptor, 0) == 0 ? 0 : errno;
+}
+
+static int open_both(recording_files *files, const char *path, const char *times_path)
+{
+    bool created;
+    files->frames.descriptor = open_for_writing(path, &created);
+    if (files->frames.descriptor < 0)
+        return errno;
+    int failure = open_times(files, times_path);
+    if (failure != 0 && created)
+        unlink(path);
+    return failure;
+}
+
+static const char *explain(int failure)
+{
+    if (failure == ENXIO)
+        return "it is a pipe that nobody reads";
+    return failure == ETXTBSY ? "it is being played, or recorded to" : strerror(failure);
 }
 
 recording_files *recording_files_open(const char *path, double rate_hz, const atomic_bool *given_up,
@@ -119,8 +142,7 @@ recording_files *recording_files_open(const char *path, double rate_hz, const at
     free(times_path);
     if (failure == 0)
         return files;
-    error_text_set(error, "cannot be recorded to: %s", failure == ENXIO ? "it is a pipe that nobody reads"
-                                                                        : strerror(failure));
+    error_text_set(error, "cannot be recorded to: %s", explain(failure));
     release(files);
     return NULL;
 }

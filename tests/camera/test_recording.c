@@ -210,7 +210,39 @@ static void where_nothing_can_be_written_is_told(void **state)
     assert_string_equal(error.text, "cannot be recorded to: No such file or directory");
     mkdir(in_folder("b.raw.times"), 0700);
     assert_null(recording_open(in_folder("b.raw"), 0, &error));
+    assert_int_equal(access(in_folder("b.raw"), F_OK), -1);
     assert_true(recording_close(NULL, &error));
+}
+
+static void what_is_played_is_not_recorded_over(void **state)
+{
+    static const frame_layout layout = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    error_text error;
+    char times[300];
+    (void)state;
+    record(in_folder("played.raw"), &layout);
+    strcpy(times, in_folder("played.raw.times"));
+    assert_int_equal(unlink(times), 0);
+    char name[320];
+    snprintf(name, sizeof name, "raw:GREY:40x30,%s@max", in_folder("played.raw"));
+    camera *device = camera_open(name, &error);
+    assert_non_null(device);
+    assert_null(recording_open(in_folder("played.raw"), 0, &error));
+    assert_int_equal(access(times, F_OK), -1);
+    camera_close(device);
+
+    record(in_folder("played.raw"), &layout);
+    device = play(in_folder("played.raw"), &error);
+    assert_null(recording_open(in_folder("played.raw"), 0, &error));
+    assert_string_equal(error.text, "cannot be recorded to: it is being played, or recorded to");
+    assert_int_equal(size_of(in_folder("played.raw")), FRAMES * WIDTH * HEIGHT);
+    assert_int_equal(lines_of_times("played.raw"), 1 + FRAMES);
+    camera_close(device);
+
+    recording *file = recording_open(in_folder("played.raw"), 0, &error);
+    assert_non_null(file);
+    assert_null(recording_open(in_folder("played.raw"), 0, &error));
+    assert_true(recording_close(file, &error));
 }
 
 int main(void)
@@ -222,6 +254,7 @@ int main(void)
         cmocka_unit_test(a_full_disk_ends_it_at_a_whole_frame),
         cmocka_unit_test(a_device_that_is_full_ends_it),
         cmocka_unit_test(what_cannot_begin_destroys_nothing),
+        cmocka_unit_test(what_is_played_is_not_recorded_over),
         cmocka_unit_test(another_size_ends_it),
         cmocka_unit_test(where_nothing_can_be_written_is_told),
     };

@@ -3,7 +3,7 @@
 
 #include "damaged_line.h"
 
-enum { LINES = 60000, SCRIPT_MAX = 192 };
+enum { LINES = 25000, SCRIPT_MAX = 192 };
 
 static size_t random_script(uint32_t *random, uint8_t script[SCRIPT_MAX])
 {

@@ -10,19 +10,22 @@ const char *const clutter_usage =
     "Decodes frames of 640 x 480 px in which there is no tape, and tells what was read in them all the same.\n"
     "\n"
     "  --frames N        of each kind (100)\n"
-    "  --first N         the first frame's number (0): a frame is made by its kind, its number and the seed alone\n"
+    "  --first N         number of the first (0): a frame is made by its kind, its number and the seed alone\n"
     "  --seed N          of all that is random (1)\n"
     "  --kinds LIST      names with commas between them (all)\n"
-    "  --sheets DIR      more kinds: pictures of up to 1024 x 1024 px, each kind's named alike up to the last hyphen\n"
+    "  --sheets DIR      more kinds: pictures of up to 1024 x 1024 px, those of a kind alike up to the last hyphen\n"
     "  --keep DIR        writes each frame in which something was read to DIR/KIND-NUMBER.pgm\n"
     "  --raw FILE        writes all frames, headerless, 8 bits a pixel; \"-\" is standard output\n"
     "  -o, --output FILE where the report goes, in JSON (-)\n"
     "  --strict          fails when any code marker was read\n"
     "  --help            prints this\n"
     "\n"
-    "Exit status: 0 all was done; 1 a file could not be read or written, or --strict found something; 2 wrong usage.\n";
+    "Exit status: 0 all was done; 1 a file could not be read or written, or --strict found something; 2 wrong\n"
+    "usage.\n";
 
-enum { CODE_FRAMES = 256, CODE_FIRST, CODE_SEED, CODE_KINDS, CODE_SHEETS, CODE_KEEP, CODE_RAW, CODE_STRICT, CODE_HELP };
+enum {
+    CODE_FRAMES = 256, CODE_FIRST, CODE_SEED, CODE_KINDS, CODE_SHEETS, CODE_KEEP, CODE_RAW, CODE_STRICT, CODE_HELP
+};
 
 static const struct option known_options[] = {
     {"frames", required_argument, NULL, CODE_FRAMES}, {"first", required_argument, NULL, CODE_FIRST},
@@ -82,8 +85,8 @@ options_answer clutter_options_parse(int argc, char *argv[], clutter_options *al
         if (code == CODE_HELP)
             return OPTIONS_HELP;
         if (code == ':' || code == '?') {
-            error_text_set(error, code == ':' ? "%.80s needs a value" : "option '%.80s' is unknown (--help lists all)",
-                           argv[optind - 1]);
+            const char *problem = code == ':' ? "needs a value" : "is no option (--help lists all)";
+            error_text_set(error, "%.80s %s", argv[optind - 1], problem);
             return OPTIONS_WRONG;
         }
         if (!take(all, code, optarg, error))

@@ -51,7 +51,8 @@ void kinds_add_painted(clutter_kinds *kinds)
 static void name_of_file(const input_file *file, char name[KIND_NAME_MAX + 1])
 {
     const char *hyphen = strrchr(file->name, '-');
-    snprintf(name, KIND_NAME_MAX + 1, "%.*s", hyphen != NULL ? (int)(hyphen - file->name) : KIND_NAME_MAX, file->name);
+    snprintf(name, KIND_NAME_MAX + 1, "%.*s", hyphen != NULL ? (int)(hyphen - file->name) : KIND_NAME_MAX,
+             file->name);
 }
 
 bool kinds_add_directory(clutter_kinds *kinds, const char *path, error_text *error)
@@ -69,8 +70,8 @@ bool kinds_add_directory(clutter_kinds *kinds, const char *path, error_text *err
             continue;
         }
         if (kinds->count == KINDS_MAX) {
-            error_text_set(error, "%.150s: more than %d kinds; sheets of a kind are named alike up to the last hyphen",
-                           path, KINDS_MAX);
+            error_text_set(error, "%.150s: more than %d kinds; names of a kind are alike up to the last hyphen", path,
+                           KINDS_MAX);
             return false;
         }
         add_kind(kinds, (clutter_kind){.first_file = i, .file_count = 1}, name);

@@ -85,7 +85,8 @@ static bool decode_frame(clutter_run *run, size_t kind_index, size_t number, uin
         error_text_set(error, "not enough memory");
         return false;
     }
-    if (run->frames != NULL && fwrite(run->pixels, 1, FRAME_BYTES, output_file_stream(run->frames)) < FRAME_BYTES) {
+    if (run->frames != NULL &&
+        fwrite(run->pixels, 1, FRAME_BYTES, output_file_stream(run->frames)) < FRAME_BYTES) {
         error_text_set(error, "--raw %.150s: cannot be written", run->options.frames_path);
         return false;
     }
@@ -119,9 +120,9 @@ static bool decode_kind(clutter_run *run, size_t kind_index, error_text *error)
 static bool decode_all(clutter_run *run, error_text *error)
 {
     FILE *report = output_file_stream(run->report);
-    fprintf(report, "{\"program\":\"%s\",\"version\":\"%s\",\"seed\":%.0f,\"first\":%.0f,\"width\":%d,\"height\":%d,\n"
-                    " \"read\":[", PROGRAM, tapemark_version(), run->options.seed, run->options.first, WIDTH_PX,
-            HEIGHT_PX);
+    fprintf(report, "{\"program\":\"%s\",\"version\":\"%s\",\"seed\":%.0f,\"first\":%.0f,", PROGRAM,
+            tapemark_version(), run->options.seed, run->options.first);
+    fprintf(report, "\"width\":%d,\"height\":%d,\n \"read\":[", WIDTH_PX, HEIGHT_PX);
     for (size_t i = 0; i < run->kinds.count; i++)
         if (kind_is_wanted(&run->options, run->kinds.list[i].name) && !decode_kind(run, i, error))
             return false;

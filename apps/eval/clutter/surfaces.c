@@ -34,7 +34,8 @@ static float lattice_noise(uint64_t seed, int x, int y, int step)
     for (int i = 0; i < 4; i++)
         corners[i] = (float)(int32_t)(random_at(seed, (column + (i & 1)) % count, (row + (i >> 1)) % count) >> 32) *
                      0x1p-31f;
-    const float above = corners[0] + u * (corners[1] - corners[0]), below = corners[2] + u * (corners[3] - corners[2]);
+    const float above = corners[0] + u * (corners[1] - corners[0]);
+    const float below = corners[2] + u * (corners[3] - corners[2]);
     return above + v * (below - above);
 }
 
@@ -105,7 +106,8 @@ static void paint_back(uint64_t seed, sheet *painted, int left, int top, int rig
 
 void paint_shelves(uint64_t seed, sheet *painted)
 {
-    const int shelf = number_of(seed, 1, 60, 250), board = number_of(seed, 2, 4, 16), most = number_of(seed, 3, 8, 70);
+    const int shelf = number_of(seed, 1, 60, 250), board = number_of(seed, 2, 4, 16);
+    const int most = number_of(seed, 3, 8, 70);
     random_source source = {seed};
     fill(painted, 0, 0, SHEET_SIDE, SHEET_SIDE, number_of(seed, 4, 10, 90));
     for (int top = 0; top < SHEET_SIDE; top += shelf) {

@@ -13,7 +13,7 @@ class Experiment:
     """`scene` makes options of tapemark-render of (step's value, random source); `damage` names what is done to the
     markers' prints instead."""
 
-    def __init__(self, name, title, axis, values, scene, damage=None, distance_m=None, twin=None):
+    def __init__(self, name, title, axis, values, scene, damage=None, distance_m=None, twin=None, harder=False):
         self.name = name
         self.title = title
         self.axis = axis
@@ -22,6 +22,7 @@ class Experiment:
         self.damage = damage
         self.distance_m = distance_m
         self.twin = twin  # a second scale: (factor, label)
+        self.harder = harder  # each step is harder than the one before
 
 
 def random_of(experiment, value, image):
@@ -123,11 +124,11 @@ BLUR_TWIN = (px_per_module(MIDDLE_M), "px")
 EXPERIMENTS = (
     Experiment("distance", "Distance", "distance, m",
                (0.5, 0.75, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 5.5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 18, 20),
-               _distance),
-    Experiment("yaw-3m", "Yaw at 3 m", "yaw, degrees", ANGLES, _angle("--yaw", 3), distance_m=3),
-    Experiment("yaw-1.5m", "Yaw at 1.5 m", "yaw, degrees", ANGLES, _angle("--yaw", 1.5), distance_m=1.5),
-    Experiment("pitch-3m", "Pitch at 3 m", "pitch, degrees", ANGLES, _angle("--pitch", 3), distance_m=3),
-    Experiment("pitch-1.5m", "Pitch at 1.5 m", "pitch, degrees", ANGLES, _angle("--pitch", 1.5), distance_m=1.5),
+               _distance, harder=True),
+    Experiment("yaw-3m", "Yaw at 3 m", "yaw, degrees", ANGLES, _angle("--yaw", 3), distance_m=3, harder=True),
+    Experiment("yaw-1.5m", "Yaw at 1.5 m", "yaw, degrees", ANGLES, _angle("--yaw", 1.5), distance_m=1.5, harder=True),
+    Experiment("pitch-3m", "Pitch at 3 m", "pitch, degrees", ANGLES, _angle("--pitch", 3), distance_m=3, harder=True),
+    Experiment("pitch-1.5m", "Pitch at 1.5 m", "pitch, degrees", ANGLES, _angle("--pitch", 1.5), distance_m=1.5, harder=True),
     Experiment("exposure", "Exposure", "exposure (1: paper is 203 of 255)",
                (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 6, 8, 10, 11, 12, 14), _exposure,
                distance_m=MIDDLE_M),
@@ -136,20 +137,20 @@ EXPERIMENTS = (
     Experiment("shadow", "Shadow edge", "share of light lost in the shadow", (0, 0.25, 0.5, 0.75, 0.9, 0.97), _shadow,
                distance_m=MIDDLE_M),
     Experiment("motion-along", "Motion along the tape", "motion, modules of the tape",
-               (0, 0.4, 0.8, 1.2, 1.5, 1.7, 2, 2.5), _motion(0), distance_m=MIDDLE_M, twin=BLUR_TWIN),
+               (0, 0.4, 0.8, 1.2, 1.5, 1.7, 2, 2.5), _motion(0), distance_m=MIDDLE_M, twin=BLUR_TWIN, harder=True),
     Experiment("motion-across", "Motion across the tape", "motion, modules of the tape",
-               (0, 0.4, 0.8, 1.2, 1.5, 1.7, 2, 2.5), _motion(90), distance_m=MIDDLE_M, twin=BLUR_TWIN),
+               (0, 0.4, 0.8, 1.2, 1.5, 1.7, 2, 2.5), _motion(90), distance_m=MIDDLE_M, twin=BLUR_TWIN, harder=True),
     Experiment("defocus", "Defocus", "sigma, modules of the tape", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8), _defocus,
-               distance_m=MIDDLE_M, twin=BLUR_TWIN),
+               distance_m=MIDDLE_M, twin=BLUR_TWIN, harder=True),
     Experiment("roll", "Roll at 1.5 m", "roll, degrees", tuple(range(0, 360, 15)), _roll, distance_m=1.5),
     Experiment("occlusion", "Occlusion", "share of the tape's length that is hidden",
                (0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8), _occlusion, distance_m=MIDDLE_M),
     Experiment("cells", "Cells flipped", "share of the code's cells", (0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3), _damaged,
-               damage="cells", distance_m=MIDDLE_M),
+               damage="cells", distance_m=MIDDLE_M, harder=True),
     Experiment("dirt", "Dirt", "share of the print covered", (0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3), _damaged,
-               damage="dirt", distance_m=MIDDLE_M),
+               damage="dirt", distance_m=MIDDLE_M, harder=True),
     Experiment("tears", "Tears", "share of the print torn off", (0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3), _damaged,
-               damage="tears", distance_m=MIDDLE_M),
+               damage="tears", distance_m=MIDDLE_M, harder=True),
 )
 
 

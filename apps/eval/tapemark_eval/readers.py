@@ -1,4 +1,7 @@
-"""The systems that are compared. Each reads gray images in this process, in one thread, with its defaults."""
+"""The systems that are compared. Each reads gray images in this process, in one thread, with its defaults.
+
+`reach_m`: experiments that stand further away are not asked of a system that reads next to nothing there even when
+nothing else is wrong."""
 
 import os
 import time
@@ -15,6 +18,9 @@ from .apriltag_library import AprilTag36h11
 from .tapemark_library import Tapemark
 
 cv2.setNumThreads(1)
+
+
+ANY_DISTANCE = float("inf")
 
 
 class Reading:
@@ -35,6 +41,7 @@ def _timed(work, *arguments):
 
 class TapemarkReader:
     name, label, marker = "tapemark", "Tapemark", "tape"
+    reach_m = ANY_DISTANCE
 
     def __init__(self, library_path):
         self._decoder = Tapemark(library_path)
@@ -50,6 +57,7 @@ class TapemarkReader:
 
 class ArucoReader:
     name, label, marker = "aruco", "ArUco", "aruco"
+    reach_m = ANY_DISTANCE
 
     def __init__(self):
         dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_100)
@@ -73,6 +81,7 @@ class QrOpencvReader:
     """The newer of OpenCV's two detectors: the older one reads next to nothing where several codes are in view."""
 
     name, label, marker = "qr-opencv", "QR code, OpenCV", "qr"
+    reach_m = 1.6
 
     def __init__(self):
         self._detector = cv2.QRCodeDetectorAruco()
@@ -87,6 +96,7 @@ class QrOpencvReader:
 
 class QrZxingReader:
     name, label, marker = "qr-zxing", "QR code, ZXing-C++", "qr"
+    reach_m = 2.4
 
     def version(self):
         return f"zxing-cpp {metadata.version('zxing-cpp')}, QR codes alone, defaults"
@@ -98,6 +108,7 @@ class QrZxingReader:
 
 class StagReader:
     name, label, marker = "stag", "STag", "stag"
+    reach_m = ANY_DISTANCE
 
     def version(self):
         return f"stag-python {metadata.version('stag-python')}, HD11, defaults"
@@ -109,6 +120,7 @@ class StagReader:
 
 class AprilTagReader:
     marker = "apriltag"
+    reach_m = ANY_DISTANCE
 
     def __init__(self, decimate):
         self._decimate = decimate
@@ -124,7 +136,20 @@ class AprilTagReader:
         return Reading(ids, [], cpu_ms)
 
 
+MAKERS = {
+    "tapemark": TapemarkReader,
+    "aruco": lambda _: ArucoReader(),
+    "qr-opencv": lambda _: QrOpencvReader(),
+    "qr-zxing": lambda _: QrZxingReader(),
+    "stag": lambda _: StagReader(),
+    "apriltag-1": lambda _: AprilTagReader(1),
+    "apriltag-2": lambda _: AprilTagReader(2),
+}  # in the order in which they are shown
+
+
+def reader_named(name, library_path):
+    return MAKERS[name](library_path)
+
+
 def all_readers(library_path):
-    """In the order in which they are shown."""
-    return [TapemarkReader(library_path), ArucoReader(), QrOpencvReader(), QrZxingReader(), StagReader(),
-            AprilTagReader(1), AprilTagReader(2)]
+    return [reader_named(name, library_path) for name in MAKERS]
