@@ -58,8 +58,11 @@ static void name_of_file(const input_file *file, char name[KIND_NAME_MAX + 1])
 bool kinds_add_directory(clutter_kinds *kinds, const char *path, error_text *error)
 {
     size_t skipped;
-    if (!input_list_add_directory(&kinds->files, path, NULL, &skipped, error))
+    error_text reason;
+    if (!input_list_add_directory(&kinds->files, path, NULL, &skipped, &reason)) {
+        error_text_set(error, "%.150s: %s", path, reason.text);
         return false;
+    }
     input_list_set_names(&kinds->files);
     for (size_t i = 0; i < kinds->files.count; i++) {
         char name[KIND_NAME_MAX + 1];
