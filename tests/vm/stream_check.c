@@ -39,22 +39,39 @@ static const stream_run usb_runs[] = {
 
 enum { VIVID_RUNS = sizeof vivid_runs / sizeof *vivid_runs, USB_RUNS = sizeof usb_runs / sizeof *usb_runs };
 
+/* Times from capture, of the runs in their order. */
+typedef struct run_times {
+    char name[64];
+    double first_p50_ms, first_p99_ms, last_p50_ms, last_p99_ms;  /* to the first byte on the line, and the last */
+} run_times;
+
+static run_times times[VIVID_RUNS + USB_RUNS];
+static size_t times_count;
+
 static void tell_run(stream_session *session, const stream_run *run, bool good)
 {
-    char name[64];
     frame_check *check = &session->check;
-    snprintf(name, sizeof name, "%s %s %dx%d %s %d", run->camera, run->format, (int)run->width_px,
+    run_times *row = &times[times_count++];
+    *row = (run_times){.first_p50_ms = frame_check_age_ms(check, 0.5), .first_p99_ms = frame_check_age_ms(check, 0.99),
+                       .last_p50_ms = frame_check_p50_ms(check), .last_p99_ms = frame_check_p99_ms(check)};
+    snprintf(row->name, sizeof row->name, "%s %s %dx%d %s %d", run->camera, run->format, (int)run->width_px,
              (int)run->height_px, run->encoding, run->baud);
-    session_tell(session, good, name,
-                 "%llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, %llu dropped, %llu repeated; ms from capture "
-                 "to first byte %.1f, %.1f (p50, p99), to last %.1f, %.1f",
+    session_tell(session, good, row->name,
+                 "%llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, %llu dropped, %llu repeated",
                  (unsigned long long)check->frames, (unsigned long long)check->whole, (unsigned long long)check->cms,
                  (unsigned long long)check->tms, (unsigned long long)check->wrong,
-                 (unsigned long long)check->dropped, (unsigned long long)check->repeated,
-                 frame_check_age_ms(check, 0.5), frame_check_age_ms(check, 0.99), frame_check_p50_ms(check),
-                 frame_check_p99_ms(check));
+                 (unsigned long long)check->dropped, (unsigned long long)check->repeated);
     if (check->wrong > 0)
         printf("       %s\n", check->complaint);
+}
+
+static void tell_times(void)
+{
+    printf("\n%-51s %9s %9s %9s %9s\n", "ms from capture, in the emulated board:", "first p50", "p99", "last p50",
+           "p99");
+    for (size_t i = 0; i < times_count; i++)
+        printf("%-51s %9.1f %9.1f %9.1f %9.1f\n", times[i].name, times[i].first_p50_ms, times[i].first_p99_ms,
+               times[i].last_p50_ms, times[i].last_p99_ms);
 }
 
 static void check_run(stream_session *session, const stream_run *run)
@@ -129,6 +146,7 @@ int main(int argc, char **argv)
         check_vivid(&session);
         check_usb(&session);
         check_faults(&session);
+        tell_times();
     }
     machine_do(&session.board, 1000, "poweroff -f");
     machine_close(&session.board);

@@ -33,7 +33,7 @@ void session_tell(stream_session *session, bool good, const char *name, const ch
     va_list arguments;
     session->checks++;
     session->failures += !good;
-    printf("%-7s%-36s ", good ? "ok" : "FAILED", name);
+    printf("%-7s%-44s ", good ? "ok" : "FAILED", name);
     va_start(arguments, details);
     vprintf(details, arguments);
     va_end(arguments);
