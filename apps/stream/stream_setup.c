@@ -45,7 +45,7 @@ static bool open_line(stream *self, const stream_settings *settings)
     error_text reason;
     if (record_line_open(&self->line, settings->output, &reason))
         return true;
-    message_tell(settings->output, reason.text);
+    message_tell(NULL, reason.text);
     return false;
 }
 

@@ -204,6 +204,7 @@ static void frozen_camera_is_lost_and_opened_again(void **state)
     assert_false(step(1));
     assert_int_equal(fake.closed, 1);
     for (int i = 0; i < 5; i++) {
+        assert_false(step(0));
         assert_true(camera_watch_wake_ns(&watch) > fake.now_ns);
         assert_false(step((camera_watch_wake_ns(&watch) - fake.now_ns) / ms));
     }

@@ -107,31 +107,42 @@ static void fast_camera(void **state)
     assert_true(seen.dropped > FRAMES / 2);
 }
 
-static pid_t start_other_work(void)
+enum { OTHERS = 4 };
+
+static pid_t others[OTHERS];
+
+static void start_other_work(void)
 {
-    const pid_t other = fork();
-    if (other == 0) {
+    for (int i = 0; i < OTHERS; i++) {
+        others[i] = fork();
+        if (others[i] != 0)
+            continue;
         prctl(PR_SET_PDEATHSIG, SIGKILL);
         for (;;)
             continue;
     }
-    return other;
+}
+
+static int end_other_work(void **state)
+{
+    for (int i = 0; i < OTHERS; i++) {
+        if (others[i] <= 0)
+            continue;
+        kill(others[i], SIGKILL);
+        waitpid(others[i], NULL, 0);
+        others[i] = 0;
+    }
+    return close_host(state);
 }
 
 static void busy_machine(void **state)
 {
     (void)state;
-    enum { OTHERS = 6 };
-    pid_t others[OTHERS];
-    for (int i = 0; i < OTHERS; i++)
-        others[i] = start_other_work();
     start(ARGUMENTS("--camera", WALK "@15", "--repeat", "yes", "--serial", "LINE:921600", "--encoding", "cobs"));
+    expect_record(TAPEMARK_RECORD_FRAME);
+    start_other_work();
     timed_line line = timed_line_of(host.line, 921600);
     const ages seen = watch(&line, frame_time_ns);
-    for (int i = 0; i < OTHERS; i++) {
-        kill(others[i], SIGKILL);
-        waitpid(others[i], NULL, 0);
-    }
     assert_young_and_honest(&seen);
 }
 
@@ -194,7 +205,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(slow_line, open_host, close_host),
         cmocka_unit_test_setup_teardown(fast_camera, open_host, close_host),
-        cmocka_unit_test_setup_teardown(busy_machine, open_host, close_host),
+        cmocka_unit_test_setup_teardown(busy_machine, open_host, end_other_work),
         cmocka_unit_test_setup_teardown(slow_viewers, open_host, close_host),
         cmocka_unit_test_setup_teardown(disk_that_does_not_answer, open_host, close_host),
     };
