@@ -53,7 +53,8 @@ static void tell_run(stream_session *session, const stream_run *run, bool good)
 {
     frame_check *check = &session->check;
     run_times *row = &times[times_count++];
-    *row = (run_times){.first_p50_ms = frame_check_age_ms(check, 0.5), .first_p99_ms = frame_check_age_ms(check, 0.99),
+    *row = (run_times){.first_p50_ms = frame_check_age_ms(check, 0.5),
+                       .first_p99_ms = frame_check_age_ms(check, 0.99),
                        .last_p50_ms = frame_check_p50_ms(check), .last_p99_ms = frame_check_p99_ms(check)};
     snprintf(row->name, sizeof row->name, "%s %s %dx%d %s %d", run->camera, run->format, (int)run->width_px,
              (int)run->height_px, run->encoding, run->baud);
