@@ -72,7 +72,8 @@ check()
     set -- $(weigh "$work/with") $(weigh "$work/without")
     flash=$(($1 - $3))
     memory=$(($2 - $4))
-    echo "receiver, $processor, $name: flash $flash bytes, memory $memory bytes, stack below $(stack_bytes "$work/receiver.su") bytes"
+    stack=$(stack_bytes "$work/receiver.su")
+    echo "receiver, $processor, $name: flash $flash bytes, memory $memory bytes, stack below $stack bytes"
     if [ "$flash" -gt "$flash_limit" ] || [ "$memory" -gt "$memory_limit" ] || [ "$flash" -lt 500 ]; then
         echo "$name: expected at most $flash_limit bytes of flash and $memory_limit of memory"
         status=1

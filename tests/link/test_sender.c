@@ -112,7 +112,8 @@ static void a_tm_out_of_range_is_refused(void **state)
         bool sent;
     } cases[] = {
         {3, 7, 3, 3599, 100, true},           {2, 3, 2, 0, 0, false},          {33, 7, 3, 0, 0, false},
-        {33, 0, 0, 0, 0, false},              {255, 7, 3, 0, 0, false},        {3, 8, 3, 0, 0, false},          {3, 7, 4, 0, 0, false},
+        {33, 0, 0, 0, 0, false},              {255, 7, 3, 0, 0, false},        {3, 8, 3, 0, 0, false},
+        {3, 7, 4, 0, 0, false},
         {32, 0xffffffff, 32, 0, 0, true},     {31, 0xffffffff, 0, 0, 0, false}, {31, 0x7fffffff, 0, 0, 0, true},
         {6, 0x20, 0, 3600, 0, false},         {6, 0x20, 0, 0, 101, false},
     };

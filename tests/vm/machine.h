@@ -34,7 +34,7 @@ void machine_plug(const machine *board, bool in);
 /* The USB camera stays plugged in and does nothing more, or goes on. */
 void machine_freeze(const machine *board, bool still);
 
-/* Has the machine's serial port hold back what it is given to send, or go on, as flow control by XOFF and XON does. */
+/* Has the machine's serial port hold back what it is given to send, or go on, by XOFF and XON. */
 void machine_hold_line(machine *board, bool hold);
 
 void machine_close(machine *board);

@@ -79,8 +79,8 @@ static bool measure(soak *self)
 static void tell(const soak *self, double minutes)
 {
     const frame_check *check = &self->session->check;
-    printf("%5.1f min: %llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, %llu incomplete for %llu damaged bytes, "
-           "%llu lost; %u times out, %u frozen, %u held, %u reloads, %u not back, %u late; %ld KiB, %d descriptors\n",
+    printf("%5.1f min: %llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, %llu incomplete for %llu damaged "
+           "bytes, %llu lost; %u times out, %u frozen, %u held, %u reloads, %u not back, %u late; %ld KiB, %d descriptors\n",
            minutes, (unsigned long long)check->frames, (unsigned long long)check->whole,
            (unsigned long long)check->cms, (unsigned long long)check->tms, (unsigned long long)check->wrong,
            (unsigned long long)check->incomplete, (unsigned long long)self->session->damaged_bytes,

@@ -6,6 +6,7 @@
  */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fault_check.h"
 #include "soak.h"
@@ -52,7 +53,8 @@ static void tell_run(stream_session *session, const stream_run *run, bool good)
 {
     frame_check *check = &session->check;
     run_times *row = &times[times_count++];
-    *row = (run_times){.first_p50_ms = frame_check_age_ms(check, 0.5), .first_p99_ms = frame_check_age_ms(check, 0.99),
+    *row = (run_times){.first_p50_ms = frame_check_age_ms(check, 0.5),
+                       .first_p99_ms = frame_check_age_ms(check, 0.99),
                        .last_p50_ms = frame_check_p50_ms(check), .last_p99_ms = frame_check_p99_ms(check)};
     snprintf(row->name, sizeof row->name, "%s %s %dx%d %s %d", run->camera, run->format, (int)run->width_px,
              (int)run->height_px, run->encoding, run->baud);
@@ -65,6 +67,17 @@ static void tell_run(stream_session *session, const stream_run *run, bool good)
         printf("       %s\n", check->complaint);
 }
 
+/* What decoding alone takes, by pictures that camera_loop compared. */
+typedef struct decoding_time {
+    const char *layout;
+    double ms;
+} decoding_time;
+
+static decoding_time decoding_times[] = {{"GREY 640 480", 0}, {"YUYV 640 480", 0}, {"NV12 640 480", 0},
+                                         {"Y10 640 480", 0},  {"GREY 1280 720", 0}};
+
+enum { DECODING_TIMES = sizeof decoding_times / sizeof *decoding_times };
+
 static void tell_times(void)
 {
     printf("\n%-51s %9s %9s %9s %9s\n", "ms from capture, in the emulated board:", "first p50", "p99", "last p50",
@@ -72,6 +85,8 @@ static void tell_times(void)
     for (size_t i = 0; i < times_count; i++)
         printf("%-51s %9.1f %9.1f %9.1f %9.1f\n", times[i].name, times[i].first_p50_ms, times[i].first_p99_ms,
                times[i].last_p50_ms, times[i].last_p99_ms);
+    for (size_t i = 0; i < DECODING_TIMES; i++)
+        printf("of that, decoding %-33s %9.1f\n", decoding_times[i].layout, decoding_times[i].ms);
 }
 
 static void check_run(stream_session *session, const stream_run *run)
@@ -90,16 +105,17 @@ static void check_run(stream_session *session, const stream_run *run)
 
 static void check_vivid(stream_session *session)
 {
-    static const char *const layouts[] = {"GREY 640 480", "YUYV 640 480", "NV12 640 480", "Y10 640 480",
-                                          "GREY 1280 720"};
     char command[120], name[40];
     machine_do(&session->board, CAMERA_LOOP_MS,
                "load vivid n_devs=1 node_types=0x101 num_inputs=1 input_types=0x3 num_outputs=1 output_types=0x1; "
                "wait_for /dev/video1");
-    for (size_t i = 0; i < sizeof layouts / sizeof *layouts; i++) {
-        snprintf(name, sizeof name, "vivid %s, byte for byte", layouts[i]);
-        snprintf(command, sizeof command, "camera_loop vivid /dev/video0 /dev/video1 %s 20", layouts[i]);
+    for (size_t i = 0; i < DECODING_TIMES; i++) {
+        snprintf(name, sizeof name, "vivid %s, byte for byte", decoding_times[i].layout);
+        snprintf(command, sizeof command, "camera_loop vivid /dev/video0 /dev/video1 %s 20",
+                 decoding_times[i].layout);
         session_command(session, name, CAMERA_LOOP_MS, command);
+        const char *told = strstr(session->board.answer, "decoded in ");
+        decoding_times[i].ms = told != NULL ? strtod(told + strlen("decoded in "), NULL) : 0;
     }
     for (size_t i = 0; i < VIVID_RUNS; i++) {
         const stream_run *run = &vivid_runs[i];

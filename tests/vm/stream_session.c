@@ -55,7 +55,8 @@ bool session_start(stream_session *session, const char *camera, const char *form
     return machine_do(&session->board, ANSWER_MS,
                       "start tapemark-stream --camera %s --format %s --size %dx%d --encoding %s "
                       "--serial /dev/ttyAMA0:%d",
-                      camera, format, (int)session->check.width_px, (int)session->check.height_px, encoding, baud) == 0;
+                      camera, format, (int)session->check.width_px, (int)session->check.height_px, encoding,
+                      baud) == 0;
 }
 
 bool session_until(stream_session *session, const uint64_t *counter, uint64_t growth, int timeout_ms)

@@ -1,4 +1,4 @@
-"""tapemark-eval: the measurements, their plots and their page. See README.md."""
+"""tapemark-eval: the measurements, their plots and their page. See apps/eval/README.md."""
 
 import argparse
 import json
@@ -6,12 +6,14 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import experiments
-from .camera import CAMERA
+from . import experiments, gate, memory, page, plots, timing
+from .camera import CAMERA, HEIGHT_PX, WIDTH_PX
 from .measure import Bench
 from .readers import all_readers
 from .scene_source import SceneError, SceneSource
 from .tapemark_library import Tapemark
+
+TIMED_IMAGES = 4
 
 
 def _arguments():
@@ -22,24 +24,44 @@ def _arguments():
     parser.add_argument("--steps", type=int, help="about so many steps an experiment (all)")
     parser.add_argument("--only", action="append", choices=[each.name for each in experiments.EXPERIMENTS],
                         help="this experiment; again for more (all)")
+    parser.add_argument("--page", action="store_true", help="only plots and page, from evaluation.json as it is")
     return parser.parse_args()
+
+
+def _systems(bench, decoder):
+    systems = [{"name": each.name, "label": each.label, "marker": each.marker, "version": each.version()}
+               for each in bench.readers]
+    decoder.prepare(b"", WIDTH_PX, HEIGHT_PX)
+    systems[0]["workspace_bytes"] = decoder.workspace_bytes()
+    return systems
+
+
+def _measure(chosen, folder):
+    """The whole report."""
+    library = str(chosen.build / "lib" / "libtapemark.so")
+    decoder = Tapemark(library)
+    with SceneSource(chosen.build / "bin" / "tapemark-eval-scenes") as source:
+        bench = Bench(source, all_readers(library), decoder, folder)
+        return {
+            "images": chosen.images, "camera": " ".join(CAMERA), "systems": _systems(bench, decoder),
+            "timing": timing.measure(bench, TIMED_IMAGES), "memory": memory.measure(bench, library),
+            "gate": gate.measure(source, decoder, folder),
+            "experiments": {each.name: bench.run(each, chosen.images, chosen.steps) for each in experiments.EXPERIMENTS
+                            if chosen.only is None or each.name in chosen.only}}
 
 
 def main():
     chosen = _arguments()
-    library = chosen.build / "lib" / "libtapemark.so"
-    program = chosen.build / "bin" / "tapemark-eval-scenes"
-    with tempfile.TemporaryDirectory() as folder, SceneSource(program) as source:
-        readers = all_readers(str(library))
-        bench = Bench(source, readers, Tapemark(str(library)), folder)
-        results = {each.name: bench.run(each, chosen.images, chosen.steps) for each in experiments.EXPERIMENTS
-                   if chosen.only is None or each.name in chosen.only}
-    report = {"camera": " ".join(CAMERA),
-              "systems": [{"name": each.name, "label": each.label, "marker": each.marker, "version": each.version()}
-                          for each in readers],
-              "experiments": results}
-    chosen.output.mkdir(parents=True, exist_ok=True)
-    (chosen.output / "evaluation.json").write_text(json.dumps(report, separators=(",", ":")) + "\n")
+    path = chosen.output / "evaluation.json"
+    if chosen.page:
+        report = json.loads(path.read_text())
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            report = _measure(chosen, folder)
+        chosen.output.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps(report, separators=(",", ":")) + "\n")
+    plots.draw_all(report, chosen.output)
+    (chosen.output / "README.md").write_text(page.markdown(report, []))
 
 
 if __name__ == "__main__":

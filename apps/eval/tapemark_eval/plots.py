@@ -1,4 +1,4 @@
-"""The plots of the page: shares of markers read, with their 95 % intervals."""
+"""The plots of the page: shares of markers read; upright lines are their 95 % intervals."""
 
 import matplotlib
 
@@ -42,7 +42,7 @@ def _draw(axes, name, label, series, dashed=False):
     axes.plot(values, shares, color=colour, marker=mark, markersize=5 if bold else 4, linewidth=2 if bold else 1.2,
               linestyle="--" if dashed else line, label=label, zorder=3 if bold else 2,
               markerfacecolor="white" if dashed else colour)
-    axes.fill_between(values, low, high, color=colour, alpha=0.1, linewidth=0)
+    axes.vlines(values, low, high, color=colour, alpha=0.45, linewidth=2 if bold else 1.2, zorder=1)
 
 
 def _panel(axes, name, experiment, systems):

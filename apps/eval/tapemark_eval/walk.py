@@ -1,8 +1,8 @@
 """The walk: a hundred frames past tape, and past the other systems' markers in the same places.
 
 Condition A is the inventors' own: their videos, one a system. B and C are after their description: a camera 1.40 m
-above the floor goes through two rooms; in B the tape hangs at its height and it looks ahead, in C the tape lies on the
-floor by the wall and it looks 30 degrees down."""
+above the floor goes through two rooms; in B the tape hangs at its height and it looks ahead, in C the tape lies on
+the floor by the wall and it looks 30 degrees down."""
 
 import json
 import statistics
@@ -122,8 +122,8 @@ def _code(ids):
 
 def _truth_of_scene(truth, marker):
     if marker == "tape":
-        return FrameTruth({each["id"] for each in truth["cms"] if each["full"]}, {each["id"] for each in truth["cms"]},
-                          {_code(each["ids"]) for each in truth["segments"] if len(each["ids"]) >= 3})
+        whole, shown = {each["id"] for each in truth["cms"] if each["full"]}, {each["id"] for each in truth["cms"]}
+        return FrameTruth(whole, shown, {_code(each["ids"]) for each in truth["segments"] if len(each["ids"]) >= 3})
     numbers = [(_marker_id(marker, each["picture"]), each["full"]) for each in truth["pictures"]]
     return FrameTruth({each for each, full in numbers if full}, {each for each, _ in numbers}, set())
 
