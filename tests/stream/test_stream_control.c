@@ -9,12 +9,12 @@
 static void term_ends_within_a_frame(void **state)
 {
     (void)state;
-    start(ARGUMENTS("--camera", WALK "@5", "--repeat", "yes", "--serial", "LINE"));
+    start(ARGUMENTS("--camera", WALK "@0.3", "--serial", "LINE"));
     expect_record(TAPEMARK_RECORD_FRAME);
     const int64_t told_ns = host_clock_ns();
     assert_int_equal(kill(host.program, SIGTERM), 0);
     assert_int_equal(host_wait(&host, SOON_MS), 0);
-    assert_in_range(host_clock_ns() - told_ns, 0, 200000000);
+    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     assert_string_equal(host.said, "");
 }
 
