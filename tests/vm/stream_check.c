@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "fault_check.h"
+#include "gpio_check.h"
 #include "soak.h"
 
 enum { CAMERA_LOOP_MS = 60000, STREAM_MS = 40000 };
@@ -160,6 +161,7 @@ int main(int argc, char **argv)
         soak_run(&session, strtod(argv[3], NULL));
     } else {
         check_vivid(&session);
+        check_gpio(&session, argv[1]);
         check_usb(&session);
         check_faults(&session);
         tell_times();
