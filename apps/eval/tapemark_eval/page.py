@@ -1,6 +1,6 @@
 """The page: data/evaluation/README.md."""
 
-from . import findings, goals
+from . import findings, goals, walk_page
 from .camera import FOCAL_PX, HEIGHT_PX, WIDTH_PX, px_per_module
 from .plots import FIGURES
 
@@ -24,12 +24,18 @@ def _percent(hits, all_of):
     return f"{share:.0f}"
 
 
+def _images(report):
+    """Images a step, of the experiment with the fewest."""
+    return min((step["systems"]["tapemark"]["frames"] for each in report["experiments"].values()
+                for step in each["steps"]), default=0)
+
+
 def _introduction(report):
     return [
         "# How far, how dark, how steep, how fast", "",
         "Tapemark and four other marker systems before the same camera, one thing at a time made harder. This page, its",
         "plots and `evaluation.json`, which has all counts, were made by", "", "```sh", COMMAND, "```", "",
-        f"There are {report['images']} images a step and kind of marker; seeds are fixed, so that only times change when",
+        f"There are {_images(report)} images a step and kind of marker; seeds are fixed, so that only times change when",
         "it is run again. How it is measured: [apps/eval](../../apps/eval/README.md).", ""]
 
 
@@ -144,8 +150,15 @@ def _figures(report):
     return lines
 
 
-def markdown(report, further_lines):
-    """The whole page; `further_lines` are those of parts with a section of their own."""
-    lines = [*_introduction(report), *_goals(report), *_beaten(report), *_wrong(report), *_systems(report),
-             *_calibration(report), *_figures(report), *further_lines]
+def markdown(report):
+    """The whole page, of the parts that were measured."""
+    labels = {each["name"]: each["label"] for each in report["systems"]}
+    lines = [*_introduction(report), *_goals(report), *_beaten(report), *_wrong(report)]
+    if "timing" in report and "memory" in report:
+        lines += _systems(report)
+    lines += [*_calibration(report), *_figures(report)]
+    if "walk" in report:
+        lines += walk_page.walk_lines(report["walk"], labels)
+    if "no-tape" in report:
+        lines += walk_page.no_tape_lines(report["no-tape"], labels)
     return "\n".join(lines).rstrip("\n") + "\n"
