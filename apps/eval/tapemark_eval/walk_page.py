@@ -34,8 +34,8 @@ def walk_lines(results, labels):
                   "most |", "| --- | --- | --- | --- | --- | --- | --- | --- |"]
         lines += ["| " + " | ".join(row) + " |" for row in _walk_rows(condition["systems"], labels)] + [""]
     if "A" in results:
-        lines += ["How much of the other systems' markers is in view is not known in A: there is a truth about the",
-                  "tape's video alone. Their ids are the numbers of the CMs in the same places, and judged by them.", ""]
+        lines += ["Which of the other systems' markers are in view is not known in A: there is a truth about the tape's",
+                  "video alone. Any id of theirs that the inventors' map has counts as right.", ""]
     return lines
 
 
