@@ -24,7 +24,7 @@ def _arguments():
     parser.add_argument("--paper-data", type=Path, help="folder with the inventors' videos, for the walk")
     parser.add_argument("--images", type=int, default=20, help="images a step (20)")
     parser.add_argument("--steps", type=int, help="about so many steps an experiment (all)")
-    parser.add_argument("--tape-free", type=int, default=6000, help="frames without tape of each kind (6000)")
+    parser.add_argument("--tape-free", type=int, default=4000, help="frames without tape of each kind (4000)")
     parser.add_argument("--only", action="append", choices=PARTS, metavar="PART",
                         help=f"this part, the others stay as they are in evaluation.json; again for more: "
                              f"{' '.join(PARTS)}")
@@ -61,8 +61,8 @@ class Evaluation:
         if name == "walk":
             return walk.measure(self.source, readers, chosen.build / "bin" / "tapemark-make", self.folder,
                                 chosen.paper_data)
-        return no_tape.measure(chosen.build / "apps" / "eval" / "clutter" / "tapemark-clutter", readers, self.folder, chosen.tape_free,
-                               max(1, chosen.tape_free // 20))
+        clutter = chosen.build / "apps" / "eval" / "clutter" / "tapemark-clutter"
+        return no_tape.measure(clutter, readers, self.folder, chosen.tape_free, max(1, chosen.tape_free // 20))
 
     def add_to(self, report):
         """Measures what is asked for."""
