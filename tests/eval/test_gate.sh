@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: test_gate.sh MODULES LIBRARY SCENES REPORT
-# The short evaluation: nothing has fallen since the counts in REPORT were taken; and that a worse picture, a wrong report
-# and a missing renderer are noticed.
+# The short evaluation: nothing has fallen since the counts in REPORT were taken; and that a worse picture, a wrong
+# report and a missing one are noticed.
 set -u
 modules=$1 library=$2 scenes=$3 report=$4
 work=$(mktemp -d) || exit 1

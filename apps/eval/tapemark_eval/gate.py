@@ -2,8 +2,8 @@
 
 The same decoder gives the same counts again, for scenes and seeds are fixed. Another decoder may lose some and win
 others by chance, and that chance is binomial: a step has fallen when its share of right markers lies below Wilson's
-95 % interval of the share of before, and so has the sum of all steps when it lies below its own. A wrong id where there
-were fewer before is never chance. Needs nothing but Python."""
+95 % interval of the share of before, and so has the sum of all steps when it lies below its own. More wrong ids than
+before are never chance. Needs nothing but Python."""
 
 import argparse
 import json
@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from . import experiments, intervals, tape_print
-from .camera import things
+from .camera import row_mm, things
 from .judge import judge
 from .scene_source import SceneError, SceneSource
 from .tapemark_library import Tapemark
@@ -47,7 +47,7 @@ class GateError(Exception):
 
 def _scene(experiment, value, image, decoder, folder):
     source = experiments.random_of(experiment.name, value, image)
-    view = [*experiment.scene(value, source), "--seed", str(image + 1)]
+    view = [*experiment.scene(value, source, row_mm(None)), "--seed", str(image + 1)]
     if experiment.damage is None:
         return view + things("tape", None)
     path = Path(folder) / "damaged-tape.pgm"
