@@ -126,8 +126,8 @@ static bool command(gpio_outside *chip, const char *format, ...)
     va_start(arguments, format);
     const int length = vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    return length > 0 && (size_t)length < sizeof text && send(chip->socket, text, (size_t)length, MSG_NOSIGNAL) == length &&
-           read_answer(chip);
+    return length > 0 && (size_t)length < sizeof text &&
+           send(chip->socket, text, (size_t)length, MSG_NOSIGNAL) == length && read_answer(chip);
 }
 
 static bool read_register(gpio_outside *chip, unsigned offset, uint8_t *value)
