@@ -124,8 +124,8 @@ static bool near(double value, double wanted, double tolerance)
 }
 
 /* Where the emulator is too slow for the clip, frames are left out, and those behind were not foretold: not all need
- * be lit. Pulses are as many as frames at most, with the first two that tell the period, and one more that is foretold
- * when there is no next frame. */
+ * be lit. Pulses are as many as frames at most, with the first two that tell the period, and one more that is
+ * foretold when there is no next frame. */
 static void tell_strobe(gpio_session *self, const char *name, watched_line line)
 {
     const strobe_findings found = gpio_watch_judge_strobe(&self->watch, line);
