@@ -61,6 +61,8 @@ static void *run(void *context)
     while (!self->ending) {
         if (!self->planned)
             pthread_cond_wait(&self->changed, &self->mutex);
+        else if (clock_ns() >= self->off_ns)
+            self->planned = false;  /* too late to be of use */
         else if (clock_ns() < self->on_ns)
             wait_until(self, self->on_ns);
         else

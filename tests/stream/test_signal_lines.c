@@ -177,7 +177,7 @@ static void strobe_that_fails_is_given_back(void **state)
     signal_lines lines = {0};
     const gpio_settings wanted = {.strobe = "0:5"};
     const int64_t now_ns = camera_clock_ns();
-    camera_frame got = {.image = {.time_ns = now_ns - 20 * ms}, .exposure_us = 2000};
+    camera_frame got = {.image = {.time_ns = now_ns - 20 * ms}, .exposure_us = 2000000};
     signal_lines_open(&lines, &wanted);
     fake.broken = true;
     signal_lines_foretell(&lines, &got, now_ns);
@@ -195,26 +195,41 @@ static void strobe_that_fails_is_given_back(void **state)
     assert_int_equal(fake.closed, 1);
 }
 
-/* A frame every 100 ms, exposed for 20 ms; told 30 ms after the middle of its exposure. */
-static void strobe_is_on_around_the_next_exposure(void **state)
+static bool is_within(int64_t value, int64_t least, int64_t most)
 {
-    (void)state;
+    return value >= least && value <= most;
+}
+
+/* A frame every 100 ms, exposed for 20 ms; told 30 ms after the middle of its exposure. Whether it flashed, and that
+ * in time. */
+static bool flashes_around_the_next_exposure(void)
+{
     signal_lines lines = {0};
     const gpio_settings wanted = {.strobe = "0:5"};
     const int64_t first_ns = camera_clock_ns();
     const camera_frame before = {.image = {.time_ns = first_ns - 200 * ms}, .exposure_us = 20000};
     const camera_frame got = {.image = {.time_ns = first_ns}, .dropped = 1, .exposure_us = 20000};
+    memset(&fake, 0, sizeof fake);
     signal_lines_open(&lines, &wanted);
     signal_lines_foretell(&lines, &before, first_ns - 170 * ms);
     assert_int_equal(fake.sets, 0);
     signal_lines_foretell(&lines, &got, first_ns + 30 * ms);
     sleep_until(first_ns + 160 * ms);
     signal_lines_close(&lines);
-    const int64_t next_ns = first_ns + 100 * ms, tolerance_ns = 25 * ms;
-    assert_in_range(fake.on_ns, next_ns - 11 * ms, next_ns - 10 * ms + tolerance_ns);
-    assert_in_range(fake.off_ns, next_ns + 10 * ms, next_ns + 10 * ms + tolerance_ns);
+    const int64_t next_ns = first_ns + 100 * ms, late_ns = 8 * ms;
     assert_false(fake.on);
-    assert_int_equal(fake.sets, 2);
+    return fake.sets == 2 && is_within(fake.on_ns, next_ns - 11 * ms, next_ns - 10 * ms + late_ns) &&
+           is_within(fake.off_ns, next_ns + 10 * ms, next_ns + 10 * ms + late_ns);
+}
+
+/* On a busy machine, a thread may be late now and then. */
+static void strobe_is_on_around_the_next_exposure(void **state)
+{
+    (void)state;
+    bool done = false;
+    for (int tries = 0; tries < 20 && !done; tries++)
+        done = flashes_around_the_next_exposure();
+    assert_true(done);
 }
 
 static void strobe_ends_with_the_line_off(void **state)
@@ -233,6 +248,19 @@ static void strobe_ends_with_the_line_off(void **state)
     assert_int_equal(fake.closed, 1);
 }
 
+static void strobe_that_comes_too_late_does_not_flash(void **state)
+{
+    (void)state;
+    error_text error;
+    strobe *flash = strobe_open((gpio_output *)(void *)&memory, &error);
+    assert_non_null(flash);
+    const int64_t now_ns = camera_clock_ns();
+    strobe_plan(flash, now_ns - 20 * ms, now_ns - 10 * ms);
+    sleep_until(now_ns + 50 * ms);
+    strobe_close(flash);
+    assert_int_equal(fake.sets, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -243,6 +271,7 @@ int main(void)
         cmocka_unit_test_setup(strobe_that_fails_is_given_back, begin),
         cmocka_unit_test_setup(strobe_is_on_around_the_next_exposure, begin),
         cmocka_unit_test_setup(strobe_ends_with_the_line_off, begin),
+        cmocka_unit_test_setup(strobe_that_comes_too_late_does_not_flash, begin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,13 +2,14 @@
  * The host's end: has tapemark-stream run in the virtual machine, reads the board's serial port with the
  * microcontroller's receiver, and holds every record against the truth.
  *
- *     stream_check FOLDER USB_CAMERA_PROCESS [SOAK_MINUTES]     with the sockets in that folder
+ *     stream_check FOLDER USB_CAMERA_PROCESS [SOAK_MINUTES CAMERA]     with the sockets in that folder
  */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "fault_check.h"
+#include "gpio_check.h"
 #include "soak.h"
 
 enum { CAMERA_LOOP_MS = 60000, STREAM_MS = 40000 };
@@ -148,18 +149,19 @@ int main(int argc, char **argv)
 {
     static stream_session session;
     setvbuf(stdout, NULL, _IOLBF, 0);
-    if (argc < 3 || argc > 4) {
-        fprintf(stderr, "stream_check: expected FOLDER USB_CAMERA_PROCESS [SOAK_MINUTES]\n");
+    if (argc != 3 && argc != 5) {
+        fprintf(stderr, "stream_check: expected FOLDER USB_CAMERA_PROCESS [SOAK_MINUTES CAMERA]\n");
         return 2;
     }
     if (!session_open(&session, argv[1], (pid_t)strtol(argv[2], NULL, 10))) {
         fprintf(stderr, "stream_check: the machine does not answer\n");
         return EXIT_FAILURE;
     }
-    if (argc == 4) {
-        soak_run(&session, strtod(argv[3], NULL));
+    if (argc == 5) {
+        soak_run(&session, strtod(argv[3], NULL), argv[4]);
     } else {
         check_vivid(&session);
+        check_gpio(&session, argv[1]);
         check_usb(&session);
         check_faults(&session);
         tell_times();

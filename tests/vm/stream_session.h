@@ -39,8 +39,9 @@ void session_for(stream_session *session, int time_ms);
  * did not end as it should. */
 double session_stop_ms(stream_session *session);
 
-/* Lines that the program said on standard error, without those of a camera that was silent for half a second, which
- * any camera may be where the machine is that slow. They are told when they are not as many as expected. */
+/* Lines that the program said on standard error, without those of a camera that was silent for half a second or slow
+ * to open, as any camera may be where the machine is that slow. They are told when they are not as many as
+ * expected. */
 bool session_said(stream_session *session, unsigned expected);
 
 /* Flips bits in one of so many bytes from now on; 0: in none. */

@@ -20,7 +20,7 @@ def _aruco(marker_id):
 
 
 def _qr(marker_id):
-    """Version 1, 21 modules wide, with as much error correction as there is: a letter and a digit fit at any level."""
+    """Version 1, 21 modules wide, with as much error correction as there is: two characters fit at any level."""
     code = zxingcpp.create_barcode(f"T{marker_id}", zxingcpp.BarcodeFormat.QRCode, ec_level="H", version=1)
     return numpy.asarray(zxingcpp.write_barcode_to_image(code, scale=1, add_quiet_zones=False))
 
