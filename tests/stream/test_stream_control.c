@@ -181,7 +181,7 @@ static void recording_tells_the_same(void **state)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/seen.y4m", folder);
     snprintf(times, sizeof times, "%s/seen.times", folder);
-    snprintf(camera_name, sizeof camera_name, "file:%s@30", path);
+    snprintf(camera_name, sizeof camera_name, "file:%s@10", path);
     start(ARGUMENTS("--camera", WALK "@max", "--record", path, "--output", "file:/dev/null"));
     assert_int_equal(host_wait(&host, SOON_MS), 0);
     assert_string_equal(host.said, "");
