@@ -90,6 +90,9 @@ static void tell_times(void)
         printf("decoding alone, %-35s %9.1f\n", decoding_times[i].layout, decoding_times[i].ms);
 }
 
+/* Records that come later than they tell, by so much, are not of now. */
+enum { LAG_MAX_US = 2000000 };
+
 static void check_run(stream_session *session, const stream_run *run)
 {
     frame_check *check = &session->check;
@@ -98,8 +101,8 @@ static void check_run(stream_session *session, const stream_run *run)
                 session_until(session, &check->whole, run->frames, STREAM_MS);
     good = session_stop_ms(session) >= 0 && good;
     good = session_said(session, 0) && good;
-    tell_run(session, run,
-             good && check->wrong == 0 && check->incomplete == 0 && session->board.line.receiver.damaged == 0);
+    good = good && check->wrong == 0 && check->incomplete == 0 && check->lag_max_us < LAG_MAX_US;
+    tell_run(session, run, good && session->board.line.receiver.damaged == 0);
 }
 
 /* ---- vivid ----------------------------------------------------------------------------------------------------- */
