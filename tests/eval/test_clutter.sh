@@ -20,6 +20,7 @@ run 0 --frames $frames --strict
 expect_lines err 0
 [ "$(numbers cms | wc -l)" -eq $kinds ] || fail "not $kinds kinds"
 [ "$(numbers cms | sort -u)" = 0 ] || fail "code markers where there are none"
+[ "$(numbers tms | sort -u)" = 0 ] || fail "tape markers where there are none"
 for kind in finder-lattice finder-rows qr-rows random-cells; do
     [ "$(numbers frames_with_finders $kind)" -ge $((frames / 2)) ] || fail "hardly any finder pattern in $kind"
 done

@@ -12,7 +12,7 @@
 #include "gpio_check.h"
 #include "soak.h"
 
-enum { CAMERA_LOOP_MS = 60000, STREAM_MS = 40000 };
+enum { CAMERA_LOOP_MS = 90000, STREAM_MS = 90000 };
 
 typedef struct stream_run {
     const char *camera, *format;
@@ -87,8 +87,11 @@ static void tell_times(void)
         printf("%-51s %9.1f %9.1f %9.1f %9.1f\n", times[i].name, times[i].first_p50_ms, times[i].first_p99_ms,
                times[i].last_p50_ms, times[i].last_p99_ms);
     for (size_t i = 0; i < DECODING_TIMES; i++)
-        printf("of that, decoding %-33s %9.1f\n", decoding_times[i].layout, decoding_times[i].ms);
+        printf("decoding alone, %-35s %9.1f\n", decoding_times[i].layout, decoding_times[i].ms);
 }
+
+/* Records that come later than they tell, by so much, are not of now. */
+enum { LAG_MAX_US = 2000000 };
 
 static void check_run(stream_session *session, const stream_run *run)
 {
@@ -98,8 +101,8 @@ static void check_run(stream_session *session, const stream_run *run)
                 session_until(session, &check->whole, run->frames, STREAM_MS);
     good = session_stop_ms(session) >= 0 && good;
     good = session_said(session, 0) && good;
-    tell_run(session, run,
-             good && check->wrong == 0 && check->incomplete == 0 && session->board.line.receiver.damaged == 0);
+    good = good && check->wrong == 0 && check->incomplete == 0 && check->lag_max_us < LAG_MAX_US;
+    tell_run(session, run, good && session->board.line.receiver.damaged == 0);
 }
 
 /* ---- vivid ----------------------------------------------------------------------------------------------------- */

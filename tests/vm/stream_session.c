@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ANSWER_MS = 20000, QUIET_MS = 150, DAMAGE_EVERY_BYTES = 1500 };
+enum { ANSWER_MS = 20000, QUIET_MS = 150, DAMAGE_EVERY_BYTES = 1200 };
 
 static void take(stream_session *session, const tapemark_record *record)
 {

@@ -4,8 +4,7 @@ import cv2
 import numpy
 import zxingcpp
 
-from . import damage, stag_markers
-from .apriltag_library import AprilTag36h11
+from . import apriltag_library, damage, stag_markers
 from .camera import GAP_MM, MARKER_IDS, MARKER_MM
 
 SYSTEMS = ("aruco", "qr", "stag", "apriltag")
@@ -33,7 +32,7 @@ def picture(system, marker_id):
         return _qr(marker_id)
     if system == "stag":
         return stag_markers.picture(marker_id)
-    return AprilTag36h11(1).picture(marker_id)
+    return apriltag_library.picture(marker_id)
 
 
 def quiet_mm(system):
