@@ -38,6 +38,9 @@ grep -q "^fallen: .* wrong readings" "$work/out" || fail "no line about wrong re
 
 echo '{"gate": []}' >"$work/none.json"
 gate --report "$work/none.json" && fail "a report of other steps was accepted"
-grep -q "make it anew with --update" "$work/out" || fail "a report of other steps: not said so"
+grep -q "counts of other steps" "$work/out" || fail "a report of other steps: not said so"
 gate --report "$work/absent.json" && fail "an absent report was accepted"
 [ "$(wc -l <"$work/out")" -eq 1 ] || fail "an absent report: not one line"
+echo '{"gate": 7}' >"$work/none.json"
+gate --report "$work/none.json" && fail "a report of something else was accepted"
+grep -q "holds no counts" "$work/out" || fail "a report of something else: not said so"

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -17,14 +18,21 @@ TIMED_IMAGES = 4
 PARTS = ("timing", "memory", "gate", "walk", "no-tape", *(each.name for each in experiments.EXPERIMENTS))
 
 
+def _count(text):
+    """A whole number above zero, for argparse."""
+    if not text.isascii() or not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}' is no whole number above zero")
+    return int(text)
+
+
 def _arguments():
     parser = argparse.ArgumentParser(prog="tapemark-eval", description=__doc__)
     parser.add_argument("--build", type=Path, required=True, help="folder of a release build")
     parser.add_argument("--output", type=Path, required=True, help="folder for evaluation.json, plots and the page")
     parser.add_argument("--paper-data", type=Path, help="folder with the inventors' videos, for the walk")
-    parser.add_argument("--images", type=int, default=20, help="images a step (20)")
-    parser.add_argument("--steps", type=int, help="about so many steps an experiment (all)")
-    parser.add_argument("--tape-free", type=int, default=4000, help="frames without tape of each kind (4000)")
+    parser.add_argument("--images", type=_count, default=20, help="images a step (20)")
+    parser.add_argument("--steps", type=_count, help="about so many steps an experiment (all)")
+    parser.add_argument("--tape-free", type=_count, default=4000, help="frames without tape of each kind (4000)")
     parser.add_argument("--only", action="append", choices=PARTS, metavar="PART",
                         help=f"this part, the others stay as they are in evaluation.json; again for more: "
                              f"{' '.join(PARTS)}")
@@ -65,7 +73,7 @@ class Evaluation:
         return no_tape.measure(clutter, readers, self.folder, chosen.tape_free, max(1, chosen.tape_free // 20))
 
     def add_to(self, report):
-        """Measures what is asked for."""
+        """Measures what is asked for; yields after each part, so that what is there can be kept."""
         report |= {"camera": " ".join(CAMERA), "systems": self.systems()}
         report.setdefault("experiments", {})
         for name in PARTS:
@@ -77,22 +85,32 @@ class Evaluation:
             else:
                 print(f"{name} …", file=sys.stderr)
                 report[name] = self.part(name)
+            yield
 
 
-def _read(path):
-    return json.loads(path.read_text()) if path.exists() else {}
+def _report_so_far(chosen, path):
+    """What is in evaluation.json, where it is kept or wanted."""
+    if not chosen.page and (chosen.only is None or not path.exists()):
+        return {}
+    try:
+        report = json.loads(path.read_text())
+    except ValueError as error:
+        raise OSError(f"{path}: is no JSON ({error})") from error
+    if not isinstance(report, dict) or "systems" not in report or "experiments" not in report:
+        raise OSError(f"{path}: holds no evaluation; without --only and --page it is made anew")
+    return report
 
 
 def main():
     chosen = _arguments()
     path = chosen.output / "evaluation.json"
-    report = _read(path) if chosen.page or chosen.only else {}
+    report = _report_so_far(chosen, path)
+    chosen.output.mkdir(parents=True, exist_ok=True)
     if not chosen.page:
         with tempfile.TemporaryDirectory() as folder, \
                 SceneSource(chosen.build / "apps" / "eval" / "tapemark-eval-scenes") as source:
-            Evaluation(chosen, source, folder).add_to(report)
-        chosen.output.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(report, separators=(",", ":")) + "\n")
+            for _ in Evaluation(chosen, source, folder).add_to(report):
+                path.write_text(json.dumps(report, separators=(",", ":")) + "\n")
     plots.draw_all(report, chosen.output)
     (chosen.output / "README.md").write_text(page.markdown(report))
 
@@ -100,5 +118,5 @@ def main():
 if __name__ == "__main__":
     try:
         main()
-    except (SceneError, OSError) as error:
+    except (SceneError, OSError, subprocess.SubprocessError) as error:
         sys.exit(f"tapemark-eval: {error}")

@@ -168,4 +168,6 @@ def steps_of(experiment, limit):
     values = experiment.values
     if limit is None or limit >= len(values):
         return values
+    if limit == 1:
+        return values[:1]
     return tuple(values[math.floor(i * (len(values) - 1) / (limit - 1) + 0.5)] for i in range(limit))

@@ -40,6 +40,8 @@ STEPS = {
 
 COUNTS = (("markers", "right", "code markers"), ("tms", "tms_right", "tape markers"))
 
+COUNT_KEYS = ("markers", "right", "tms", "tms_right", "wrong")
+
 
 class GateError(Exception):
     """What is to be compared cannot be."""
@@ -77,7 +79,7 @@ def measure(source, decoder, folder, extra_words=()):
 
 def _sum_of(steps):
     total = {"experiment": "all", "value": "steps"}
-    for key in ("markers", "right", "tms", "tms_right", "wrong"):
+    for key in COUNT_KEYS:
         total[key] = sum(step[key] for step in steps)
     return total
 
@@ -86,10 +88,17 @@ def _all_steps():
     return [(name, value) for name, values in STEPS.items() for value in values]
 
 
-def _check_steps(before):
-    """Whether the baseline has the steps of now."""
-    if [(each["experiment"], each["value"]) for each in before] != _all_steps():
-        raise GateError("the baseline has other steps: make it anew with --update")
+def _counts_of(path):
+    """The baseline in a report; its steps are those of now."""
+    try:
+        before = json.loads(path.read_text())["gate"]
+        steps = [(each["experiment"], each["value"]) for each in before]
+        whole = all(isinstance(each[key], int) for each in before for key in COUNT_KEYS)
+    except (ValueError, TypeError, KeyError) as error:
+        raise GateError(f"{path}: holds no counts of a gate; --update writes them") from error
+    if steps != _all_steps() or not whole:
+        raise GateError(f"{path}: holds counts of other steps; --update writes them anew")
+    return before
 
 
 def compare(before, now):
@@ -123,16 +132,15 @@ def _arguments():
 def main():
     chosen = _arguments()
     decoder = Tapemark(chosen.library)
-    report = json.loads(chosen.report.read_text())
-    if not chosen.update:
-        _check_steps(report["gate"])
+    before = None if chosen.update else _counts_of(chosen.report)
     with tempfile.TemporaryDirectory() as folder, SceneSource(chosen.scenes) as source:
         now = measure(source, decoder, folder, chosen.extra_words.split())
     if chosen.update:
+        report = json.loads(chosen.report.read_text())
         report["gate"] = now
         chosen.report.write_text(json.dumps(report, separators=(",", ":")) + "\n")
         return 0
-    fallen = compare(report["gate"], now)
+    fallen = compare(before, now)
     for line in fallen:
         print(f"fallen: {line}")
     total = _sum_of(now)
@@ -144,5 +152,5 @@ def main():
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (SceneError, GateError, OSError, ValueError, KeyError) as error:
+    except (SceneError, GateError, OSError, ValueError) as error:
         sys.exit(f"tapemark-eval-gate: {error}")
