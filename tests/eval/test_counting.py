@@ -109,6 +109,7 @@ class Findings(unittest.TestCase):
         points = [(1, 1.0), (2, 0.96), (3, 0.4), (4, 1.0)]
         self.assertEqual(findings.reach(points, 0.95), 2)
         self.assertIsNone(findings.reach(points[2:], 0.95))
+        self.assertEqual(findings.last(points, 0.95), 4)
         self.assertEqual(findings.span(points, 0.9), (1, 2))
         self.assertAlmostEqual(findings.half_way(points), 2 + 0.46 / 0.56)
 
