@@ -100,7 +100,7 @@ static void check_run(stream_session *session, const stream_run *run)
     bool good = session_start(session, run->camera, run->format, run->encoding, run->baud) &&
                 session_until(session, &check->whole, run->frames, STREAM_MS);
     good = session_stop_ms(session) >= 0 && good;
-    good = session_said(session, 0) && good;
+    good = session_said(session, NULL, 0) && good;
     good = good && check->wrong == 0 && check->incomplete == 0 && check->lag_max_us < LAG_MAX_US;
     tell_run(session, run, good && session->board.line.receiver.damaged == 0);
 }
