@@ -114,7 +114,8 @@ static void tell_seen(gpio_session *self, const char *name, watched_line line, u
     const bool ends_on = self->watch.frame_count > 0 && gpio_watch_last_frame(&self->watch)->seen;
     session_tell(self->session,
                  found.frames >= frames_min && found.wrong * 16 <= found.frames &&
-                     found.edges == found.changes + ends_on && found.with_marker >= frames_min / 3 && found.with_marker < found.frames,
+                     found.edges == found.changes + ends_on && found.with_marker >= frames_min / 3 &&
+                     found.with_marker < found.frames,
                  name, "%u frames, %u with markers; wrong after %u of them; %u changes, %u edges", found.frames,
                  found.with_marker, found.wrong, found.changes, found.edges);
 }
