@@ -7,6 +7,8 @@
  *     last byte   the last byte of the frame's markers; a serial line carries each as its rate has it
  *     rest        that, less the wire's time for these bytes, and less what decoding this very picture takes,
  *                 measured beforehand at rest: what the machine's other work adds stays in it
+ *     sleeper     how late a thread was woken meanwhile that does nothing but sleep for a frame time, again and again:
+ *                 what of the rest is the machine's
  * each as median, 99th percentile and greatest, of FRAMES frames (600 unless told). A terminal stands for the serial
  * port; what lies between age and first byte is the time that the kernel takes to hand bytes over in it, which a busy
  * machine stretches and a real port does not know.
@@ -29,10 +31,12 @@
 #include "stream_host.h"
 #include "tapemark.h"
 #include "timed_line.h"
+#include "wake_ups.h"
 
 enum { SOON_MS = 10000, RATE_HZ = 30, WARM_UP_FRAMES = 10, FRAMES_MAX = 100000, PICTURES_MAX = 4096 };
 
 static const double ns_per_ms = 1e6;
+static const int64_t frame_ns = 1000000000 / RATE_HZ;
 
 /* ---- What decoding takes ------------------------------------------------------------------------------------- */
 
@@ -137,6 +141,7 @@ static bool open_way(way *out, stream_host *host)
 typedef struct measured {
     int64_t age_ns[FRAMES_MAX], first_ns[FRAMES_MAX], last_ns[FRAMES_MAX], rest_ns[FRAMES_MAX];
     size_t count;
+    wake_ups sleeper;
     int64_t wire_most_ns;
     int64_t age_error_least_ns;  /* by which a first byte came later than its age says */
 } measured;
@@ -170,12 +175,17 @@ static bool measure(way *out, const char *program, const char *recording, size_t
                                      "--encoding", out->encoding, NULL};
     bool good = host_start(&host, program, arguments);
     timed_line line = timed_line_of(out->end >= 0 ? out->end : host.line, out->baud);
-    *all = (measured){0};
+    all->count = 0;
+    all->wire_most_ns = 0;
+    good = good && wake_ups_begin(&all->sleeper, frame_ns);
+    const bool sleeps = good;
     for (size_t i = 0; good && i < frames + WARM_UP_FRAMES; i++) {
         good = timed_line_frame(&line, SOON_MS, &got);
         if (good && i >= WARM_UP_FRAMES)
             add(all, &got, known, line.byte_ns);
     }
+    if (sleeps)
+        wake_ups_end(&all->sleeper);
     if (!good)
         fprintf(stderr, "stream_latency: no frames through %s; %s\n", out->title, host.said);
     host_close(&host);
@@ -218,6 +228,7 @@ static void tell(const way *out, measured *all)
     tell_times(all->first_ns, all->count);
     tell_times(all->last_ns, all->count);
     tell_times(all->rest_ns, all->count);
+    tell_times(all->sleeper.late_ns, all->sleeper.count);
     printf(" %.1f |\n", (double)all->wire_most_ns / ns_per_ms);
     fflush(stdout);
 }
@@ -260,8 +271,8 @@ int main(int argc, char *argv[])
     if (!measure_decoding(argv[2], &known))
         return 1;
     tell_decoding(&known, frames);
-    printf("| way out | encoding | age | first byte | last byte | rest | wire, most |\n"
-           "| --- | --- | --- | --- | --- | --- | --- |\n");
+    printf("| way out | encoding | age | first byte | last byte | rest | sleeper | wire, most |\n"
+           "| --- | --- | --- | --- | --- | --- | --- | --- |\n");
     for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
         if (!measure(&ways[i], argv[1], argv[2], frames, &known, &all))
             return 1;
