@@ -62,6 +62,8 @@ for kept in "$data"/*; do
     name=${kept##*/}
     case $name in
     README.md) continue ;;
+    # What was measured, with a page of its own that names its command.
+    evaluation) continue ;;
     esac
     if [ ! -f "data/$name" ]; then
         # Pictures that other programs drew for people to look at.
