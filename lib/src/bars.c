@@ -8,10 +8,7 @@ enum {
     BAR_SAMPLES = 10 /* light, dark, … four bars, then two of the quiet zone */
 };
 
-/* Lines across the tape, in modules from its middle. The outermost rows are left out: the bottom one is dark in
- * light CMs too, and both are the first to be mixed with what lies beside the tape. */
-enum { LINES = 9 };
-static const float line_v[LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f, 1.65f, 2.2f};
+const float tmi_line_v[TMI_LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f, 1.65f, 2.2f};
 
 /* A line counts when its samples correlate with ideal bars at both ends by this much. */
 static const float line_bars_min = 0.3f;
@@ -68,8 +65,8 @@ static float best_stretch(const tmi_view *view, tmi_bars_place place, float *sco
     *score = -1;
     for (int s = 0; s < 5; s++) {
         float sum = 0;
-        for (int i = 0; i < LINES; i += 2)
-            sum += bars_on_line(view, place, stretches[s], line_v[i], reads);
+        for (int i = 0; i < TMI_LINES; i += 2)
+            sum += bars_on_line(view, place, stretches[s], tmi_line_v[i], reads);
         if (sum * (1.0f / 5) > *score) {
             *score = sum * (1.0f / 5);
             best = stretches[s];
@@ -128,6 +125,21 @@ static bool code_on_line(const tmi_reader *reader, const tmi_segment *segment, i
     return true;
 }
 
+void tmi_vote(const uint32_t *codes, int clear, int lines, tmi_tm_reading *out)
+{
+    int most = 0;
+    for (int i = 0; i < clear; i++) {
+        int same = 0;
+        for (int j = 0; j < clear; j++)
+            same += codes[j] == codes[i];
+        if (same > most) {
+            most = same;
+            out->code = codes[i];
+        }
+    }
+    out->vote = lines > TMI_LINES / 3 ? (float)most / (float)lines : 0;
+}
+
 bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float bars_min,
                  tmi_tm_reading *out)
 {
@@ -143,10 +155,10 @@ bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
     if (score_right < bars_min)
         return false;
     out->bars = real_min(score_left, score_right);
-    uint32_t codes[LINES];
+    uint32_t codes[TMI_LINES];
     int lines = 0, clear = 0;
-    for (int i = 0; i < LINES; i++) {
-        const float v = line_v[i];
+    for (int i = 0; i < TMI_LINES; i++) {
+        const float v = tmi_line_v[i];
         if (bars_on_line(reader->view, left, stretch_left, v, reads) < line_bars_min ||
             bars_on_line(reader->view, right, stretch_right, v, reads) < line_bars_min)
             continue;
@@ -154,16 +166,6 @@ bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
         if (code_on_line(reader, segment, first, count, v, &codes[clear]))
             clear++;
     }
-    int most = 0;
-    for (int i = 0; i < clear; i++) {
-        int same = 0;
-        for (int j = 0; j < clear; j++)
-            same += codes[j] == codes[i];
-        if (same > most) {
-            most = same;
-            out->code = codes[i];
-        }
-    }
-    out->vote = lines > LINES / 3 ? (float)most / (float)lines : 0;
+    tmi_vote(codes, clear, lines, out);
     return true;
 }

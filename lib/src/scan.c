@@ -86,11 +86,31 @@ static void finish_extreme(scan_line *scan, int extreme, int32_t here)
     scan->turn = here;
 }
 
-static void report(const scan_line *scan, int32_t line, tmi_hit_function on_hit, void *context)
+/* Something dark with light on both sides that differs by no more than this many times is a stroke. */
+enum { STROKE_SKEW = 3 };
+
+static void note_stroke(const scan_line *scan, const tmi_scan *line)
+{
+    const int before = scan->level[EDGES - 1 - 1], dark = scan->level[EDGES - 1], after = scan->previous;
+    const int less = (before < after ? before : after) - dark, more = (before > after ? before : after) - dark;
+    if (STROKE_SKEW * less >= more)
+        tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[EDGES - 2], scan->edge[EDGES - 1],
+                        less);
+}
+
+static void report(const scan_line *scan, const tmi_scan *line, tmi_hit_function on_hit, void *context)
 {
     tmi_hit hit;
-    if (!scan->rising && scan->edges >= EDGES && looks_like_finder(scan, &hit))
-        on_hit(context, line, &hit);
+    if (scan->rising)
+        return;
+    if (scan->edges >= EDGES && looks_like_finder(scan, &hit)) {
+        on_hit(context, line->number, &hit);
+        if (line->strokes)
+            tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[0], scan->edge[EDGES - 1],
+                            (int)hit.contrast);
+    }
+    if (line->strokes && scan->edges >= 2)
+        note_stroke(scan, line);
 }
 
 /* Goes on to the next extreme within the tile: the first pixel from `from` on that lies `least` below (while
@@ -129,12 +149,12 @@ int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *conte
             for (int32_t i = start; (i = next_turn(&scan, i, end, swing, &extreme)) < end; i++) {
                 finish_extreme(&scan, extreme, i);
                 extreme = gray(&scan, i);
-                report(&scan, line->number, on_hit, context);
+                report(&scan, line, on_hit, context);
             }
         }
     if (scan.rising && scan.previous != NO_EXTREME) { /* the light margin of a pattern at the line's end */
         finish_extreme(&scan, extreme, line->length);
-        report(&scan, line->number, on_hit, context);
+        report(&scan, line, on_hit, context);
     }
     return read;
 }

@@ -26,8 +26,7 @@ enum { BLANK_WORK = 250 };
 /* A CM that is believed has paid for itself: the budget bounds what is spent in vain. */
 enum { CM_CREDIT = 2500 };
 
-/* Whether there is work left; notes the limit where there is none. */
-static bool may_go_on(const tmi_reader *reader)
+bool tmi_may_go_on(const tmi_reader *reader)
 {
     tapemark_stats *stats = &reader->result->stats;
     if (stats->work < (uint64_t)reader->config->work_budget + (uint64_t)CM_CREDIT * stats->cms_read)
@@ -264,14 +263,45 @@ static float vouched(const tapemark_reject *reasons, int first, int count)
     return read > 0 ? 0.5f + 0.5f * (float)read / (float)count : 1;
 }
 
-/* Reads a part that lies in the image and has bars at both ends, and sets its corners. */
-static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
-                              bool turned, tapemark_point corners[4], tmi_tm_reading *reading)
+static void tm_corners(const tmi_segment *segment, int first, int count, bool turned, tapemark_point corners[4])
 {
     const float ink = 3.5f + TAPEMARK_BAR_MODULES;
-    const tmi_homography *left = &segment->maps[first], *right = &segment->maps[first + count - 1];
-    set_corners(left, right, ink, TAPEMARK_CM_PITCH_MODULES + ink, turned, corners);
+    set_corners(&segment->maps[first], &segment->maps[first + count - 1], ink, TAPEMARK_CM_PITCH_MODULES + ink, turned,
+                corners);
+}
+
+/* Reads a part that lies in the image and has bars at both ends. */
+static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
+                              tmi_tm_reading *reading)
+{
+    tapemark_point corners[4];
+    tm_corners(segment, first, count, false, corners);
     return inside(reader->view, corners) && tmi_tm_read(reader, segment, first, count, bars_min, reading);
+}
+
+/* Adds a TM to the result that was read so, if its vote is enough and the CMs agree. Returns its index, or TMI_NONE. */
+static int add_tm(const tmi_reader *reader, const tmi_segment *segment, const tapemark_reject *reasons, int first,
+                  int count, float turn, const tmi_tm_reading *reading)
+{
+    tapemark_result *result = reader->result;
+    const bool turned = turn < 0;
+    if (reading->vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading->code)) {
+        result->stats
+            .rejects[reading->vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE : TAPEMARK_REJECT_CONFLICT]++;
+        return TMI_NONE;
+    }
+    if (result->tm_count == result->tm_capacity) {
+        if (result->tm_capacity > 0)
+            result->stats.limits |= TAPEMARK_LIMIT_TMS;
+        return TMI_NONE;
+    }
+    tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0, .vote = reading->vote};
+    tm_corners(segment, first, count, turned, out.corners);
+    out.confidence = reading->vote * real_min(1, reading->bars * (1 / clean_bars)) * vouched(reasons, first, count);
+    for (int i = 0; i < count; i++)
+        out.code[i] = reading->code >> (turned ? i : count - 1 - i) & 1 ? '1' : '0';
+    result->tms[result->tm_count] = out;
+    return (int)result->tm_count++;
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
@@ -280,32 +310,16 @@ static int report_tm(const tmi_reader *reader, tmi_segment *segment, const tapem
                      int count, float turn)
 {
     tapemark_result *result = reader->result;
-    const bool turned = turn < 0;
-    tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0};
     tmi_tm_reading reading;
     /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
-    if (!read_between_bars(reader, segment, first, count, turned, out.corners, &reading) &&
+    if (!read_between_bars(reader, segment, first, count, &reading) &&
         !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                        &result->stats.work) &&
-          read_between_bars(reader, segment, first, count, turned, out.corners, &reading))) {
+          read_between_bars(reader, segment, first, count, &reading))) {
         result->stats.rejects[TAPEMARK_REJECT_BARS]++;
         return TMI_NONE;
     }
-    if (reading.vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading.code)) {
-        result->stats
-            .rejects[reading.vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE : TAPEMARK_REJECT_CONFLICT]++;
-        return TMI_NONE;
-    }
-    if (result->tm_count == result->tm_capacity) {
-        result->stats.limits |= TAPEMARK_LIMIT_TMS;
-        return TMI_NONE;
-    }
-    out.vote = reading.vote;
-    out.confidence = reading.vote * real_min(1, reading.bars * (1 / clean_bars)) * vouched(reasons, first, count);
-    for (int i = 0; i < count; i++)
-        out.code[i] = reading.code >> (turned ? i : count - 1 - i) & 1 ? '1' : '0';
-    result->tms[result->tm_count] = out;
-    return (int)result->tm_count++;
+    return add_tm(reader, segment, reasons, first, count, turn, &reading);
 }
 
 /* ---- The segment ------------------------------------------------------------------------------------------- */
@@ -332,7 +346,7 @@ static void read_again(const tmi_reader *reader, tmi_segment *segment, int first
     if (!tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                       &reader->result->stats.work))
         return;
-    for (int cm = first; cm < first + count && may_go_on(reader); cm++)
+    for (int cm = first; cm < first + count && tmi_may_go_on(reader); cm++)
         if (reasons[cm] != BELIEVED)
             read_both_ways(reader, segment, cm);
 }
@@ -396,7 +410,7 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
 void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
 {
     int cm_count = 0;
-    for (; cm_count < finder_count - 1 && may_go_on(reader); cm_count++)
+    for (; cm_count < finder_count - 1 && tmi_may_go_on(reader); cm_count++)
         read_cm(reader, segment, cm_count);
     int first = 0;
     for (int cm = 0; cm < cm_count; cm++)
@@ -405,4 +419,73 @@ void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder
             first = cm + 1;
         }
     read_part(reader, segment, first, cm_count - first);
+}
+
+/* ---- Tapes far away ---------------------------------------------------------------------------------------- */
+
+static tapemark_point middle_of(const tapemark_point corners[4])
+{
+    return (tapemark_point){0.25f * (corners[0].x_px + corners[1].x_px + corners[2].x_px + corners[3].x_px),
+                            0.25f * (corners[0].y_px + corners[1].y_px + corners[2].y_px + corners[3].y_px)};
+}
+
+/* The CM of the result that was read where this one is, or TMI_NONE. */
+static int read_before(const tmi_reader *reader, const tmi_homography *map)
+{
+    const tmi_point middle = tmi_project(map, 12.5f, 0), end = tmi_project(map, 20, 0);
+    const float dx = end.x - middle.x, dy = end.y - middle.y;
+    for (size_t i = 0; i < reader->result->cm_count; i++) {
+        const tapemark_point at = middle_of(reader->result->cms[i].corners);
+        const float x = at.x_px - middle.x, y = at.y_px - middle.y;
+        if (x * x + y * y < dx * dx + dy * dy)
+            return (int)i;
+    }
+    return TMI_NONE;
+}
+
+/* Which way up a CM of the result lies on the row: positive as the row runs. */
+static float turn_of(const tapemark_cm *cm, const tmi_homography *map)
+{
+    const tmi_point a = tmi_project(map, 0, 0), b = tmi_project(map, TAPEMARK_CM_PITCH_MODULES, 0);
+    return (cm->corners[1].x_px - cm->corners[0].x_px) * (b.x - a.x) +
+           (cm->corners[1].y_px - cm->corners[0].y_px) * (b.y - a.y);
+}
+
+void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm_count, const tmi_tm_reading *tm,
+                          float turn)
+{
+    tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
+    tapemark_result *result = reader->result;
+    for (int cm = 0; cm < cm_count; cm++) {
+        if (tmi_may_go_on(reader))
+            read_both_ways(reader, segment, cm);
+        else
+            segment->readings[UPRIGHT][cm] = segment->readings[TURNED][cm] =
+                (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
+    }
+    float evidence = turn_evidence(segment, 0, cm_count);
+    judge_part(reader, segment, 0, cm_count, evidence, reasons);
+    for (int cm = 0; cm < cm_count; cm++) {
+        const int known = read_before(reader, &segment->maps[cm]);
+        if (known == TMI_NONE)
+            continue;
+        (void)turn_of;
+    }
+    if (real_abs(evidence) < turn_min)
+        evidence = turn != 0 ? turn : turn_hint(reader, segment, 0, cm_count);
+    const bool turned = evidence < 0;
+    int index = TMI_NONE;
+    if (tm)
+        index = add_tm(reader, segment, reasons, 0, cm_count, evidence, tm);
+    for (int slot = 0; slot < cm_count; slot++) {
+        const int cm = turned ? cm_count - 1 - slot : slot, known = read_before(reader, &segment->maps[cm]);
+        if (known != TMI_NONE && index != TMI_NONE) {
+            result->cms[known].tm = (int16_t)index;
+            result->cms[known].slot = (int16_t)slot;
+        }
+        if (known != TMI_NONE || reasons[cm] != BELIEVED)
+            continue;
+        result->stats.cms_read++;
+        report_cm(reader, segment, cm, turned, index, slot);
+    }
 }

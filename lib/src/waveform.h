@@ -1,0 +1,94 @@
+/* The waveform of a far tape: gray values along a stripe, and the row of finder patterns and blocks that explains
+ * them. Nothing in it needs a module to be resolved. */
+#ifndef TAPEMARK_WAVEFORM_H
+#define TAPEMARK_WAVEFORM_H
+
+#include "stroke.h"
+
+#include "tapemark.h"
+
+enum { TMI_WAVE_SAMPLES = 1024 };
+
+/* What the parts of a row look like: shares of dark, blurred, in tables of four entries a module. */
+#define TMI_BLUR_MAX 4
+#define TMI_PRINT_STEPS 4
+#define TMI_PRINT_ENTRIES(columns) (((columns) - 1 + 2 * TMI_BLUR_MAX) * TMI_PRINT_STEPS + 1)
+typedef struct tmi_prints {
+    float reach; /* modules over which they are blurred; 0: not yet filled in */
+    float finder[TMI_PRINT_ENTRIES(7)], bars[TMI_PRINT_ENTRIES(7)];
+    float light[TMI_PRINT_ENTRIES(TAPEMARK_CELL_COLUMNS)], dark[TMI_PRINT_ENTRIES(TAPEMARK_CELL_COLUMNS)];
+} tmi_prints;
+
+/* Means over the tape's height, along the stripe. */
+typedef struct tmi_wave {
+    tmi_stripe stripe;
+    float start, step; /* px from the stripe's middle */
+    int count;
+    tmi_prints prints;
+    uint16_t value[TMI_WAVE_SAMPLES]; /* 64 times the gray level */
+} tmi_wave;
+
+/* Sums of the samples before each one, for a first look at many places. */
+enum { TMI_SUMS = 400 };
+typedef struct tmi_wave_sums {
+    float sum[TMI_SUMS + 1], squares[TMI_SUMS + 1];
+    int first, per_sum; /* sample at which they begin, and samples in each */
+    int count;
+} tmi_wave_sums;
+
+/* A row of CMs along the wave. The finder patterns first..first + cm_count lie at u = 25 k; u modules from finder 0
+ * are at origin + module * u / (1 + bend * u), in px from the stripe's middle. */
+typedef struct tmi_row {
+    float origin, module, bend;
+    int first, cm_count;
+    uint32_t dark;     /* CM k is dark: bit k - first */
+    float light, depth; /* gray level of light modules, and how much darker dark ones are */
+    float explained;   /* share of the wave's variance, 0 to 1 */
+    float bars[2];     /* how well bars fit at the left and right end, up to 1 */
+} tmi_row;
+
+static inline float tmi_row_px(const tmi_row *row, float u)
+{
+    return row->origin + row->module * u / (1 + row->bend * u);
+}
+
+/* The image point v modules across from the row's middle line. */
+static inline tmi_point tmi_row_at(const tmi_stripe *stripe, const tmi_row *row, float u, float v)
+{
+    const float t = tmi_row_px(row, u);
+    const float down = v * (stripe->height + stripe->taper * t) * (1.0f / TAPEMARK_HEIGHT_MODULES);
+    return (tmi_point){stripe->middle.x + t * stripe->along.x - down * stripe->along.y,
+                       stripe->middle.y + t * stripe->along.y + down * stripe->along.x};
+}
+
+/* Samples the stripe and what lies around its ends. */
+void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, tmi_wave *wave, uint32_t *reads);
+
+/* A first guess of where the row lies: its leftmost finder, one module, the CMs on from there. */
+typedef struct tmi_guess {
+    float origin, module; /* px */
+    float gain;           /* how much of the wave it explains; 0: none was found */
+    int cm_count;
+} tmi_guess;
+
+enum { TMI_GUESSES = 3 };
+
+/* Guesses, one for each range of modules, from where the strokes are. */
+void tmi_wave_guess_rows(const tmi_wave *wave, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES], uint32_t *work);
+
+/* Fits such a guess, and follows the row to both ends. */
+bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work);
+
+/* Fits the stripe to the finder patterns of the row, across. */
+bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, tmi_stripe *stripe,
+                         uint32_t *reads);
+
+/* The rings of the row's finder patterns, all of them together. */
+typedef struct tmi_rings {
+    float strength; /* as against those of the print: about 1, or 0 where there is anything else of their size */
+    float share;    /* of what is there besides a square, 0 to 1 */
+} tmi_rings;
+
+tmi_rings tmi_wave_rings(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, uint32_t *reads);
+
+#endif
