@@ -1,7 +1,7 @@
 /* The way of a frame: tiles, scan lines, finder patterns, tapes, segments. */
+#include "far.h"
 #include "real.h"
 #include "scan.h"
-#include "far.h"
 #include "segment.h"
 #include "tiles.h"
 
@@ -105,12 +105,17 @@ static tmi_scan row_of(const tmi_view *view, const tmi_tiles *tiles, int32_t y)
 static tmi_scan column_of(const tmi_view *view, const tmi_tiles *tiles, int32_t x)
 {
     const int32_t tile = x / TAPEMARK_TILE_PX;
-    return (tmi_scan){
-        view->pixels + x,   view->stride,        view->height, x,
-        view->invert,       tiles->swing + tile, tiles->pitch, tiles->column_bits + tile * tiles->column_words,
-        tiles->column_words,
-        NULL,
-        true};
+    return (tmi_scan){view->pixels + x,
+                      view->stride,
+                      view->height,
+                      x,
+                      view->invert,
+                      tiles->swing + tile,
+                      tiles->pitch,
+                      tiles->column_bits + tile * tiles->column_words,
+                      tiles->column_words,
+                      NULL,
+                      true};
 }
 
 /* The least power of two that is not below `count`. */
@@ -300,6 +305,8 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
         result->stats.segments++;
         tmi_segment_read(&reader, &w->segment, finders);
     }
+    if (w->strokes.overflow)
+        result->stats.limits |= TAPEMARK_LIMIT_CANDIDATES;
     tmi_far_read(&reader, &w->strokes, &w->far);
     return status_of(result);
 }

@@ -5,6 +5,20 @@
 
 enum { PITCH = TAPEMARK_CM_PITCH_MODULES };
 
+/* A row has to explain this share of the waveform. */
+static const float explained_min = 0.85f;
+
+/* Bars have to fit by this much; 1 is perfect. A light CM does by 0.1. */
+static const float bars_min = 0.25f;
+
+/* From this size on rings can be seen; below, a row has to explain more. */
+static const float rings_px = 0.66f, unresolved_min = 0.93f;
+
+/* Modules that words need to be told from each other, whatever they show, px. */
+static const float words_px = 0.85f;
+
+/* How much clearer one way up must be than the other. */
+static const float turn_min = 0.15f;
 
 /* ---- Reading a row -------------------------------------------------------------------------------------------- */
 
@@ -27,7 +41,8 @@ static float dark_along(const tmi_reader *reader, const tmi_far *far, const tmi_
 
 static bool bars_on_line(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, bool right, float v)
 {
-    const float end = right ? (float)(PITCH * (row->first + row->cm_count)) + 4.5f : (float)(PITCH * row->first) - 11.5f;
+    const float end =
+        right ? (float)(PITCH * (row->first + row->cm_count)) + 4.5f : (float)(PITCH * row->first) - 11.5f;
     const float bars = dark_along(reader, far, row, end, 8, v);
     const float quiet = dark_at(reader, far, row, right ? end + 8.3f : end - 1.3f, v);
     return bars > 0.25f && bars < 0.75f && quiet < 0.45f;
@@ -84,8 +99,10 @@ static void lay_out(tmi_far *far, const tmi_row *row)
     tmi_segment *segment = &far->segment;
     for (int k = 0; k <= row->cm_count; k++) {
         const float u = (float)(PITCH * (row->first + k));
-        const tmi_point at = tmi_row_at(&far->wave.stripe, row, u, 0), down = tmi_row_at(&far->wave.stripe, row, u, 1);
-        const tmi_point a = tmi_row_at(&far->wave.stripe, row, u - 1, 0), b = tmi_row_at(&far->wave.stripe, row, u + 1, 0);
+        const tmi_point at = tmi_row_at(&far->wave.stripe, row, u, 0),
+                        down = tmi_row_at(&far->wave.stripe, row, u, 1);
+        const tmi_point a = tmi_row_at(&far->wave.stripe, row, u - 1, 0),
+                        b = tmi_row_at(&far->wave.stripe, row, u + 1, 0);
         segment->finders[k] = (tmi_finder){.centre = at,
                                            .right = {0.5f * (b.x - a.x), 0.5f * (b.y - a.y)},
                                            .down = {down.x - at.x, down.y - at.y},
@@ -97,36 +114,34 @@ static void lay_out(tmi_far *far, const tmi_row *row)
         tmi_marker_map(&segment->finders[k], &segment->finders[k + 1], &segment->maps[k]);
 }
 
-/* ---- Stripes ---------------------------------------------------------------------------------------------------- */
-
-/* A TM has to explain this share of the waveform. */
-static const float explained_min = 0.85f;
-
-static const float bars_min = 0.25f;
-
-/* From this size on rings can be seen; below, a TM has to explain more. */
-static const float rings_px = 0.66f, unresolved_min = 0.93f;
-
-/* How much clearer one way up must be than the other. */
-static const float turn_min = 0.15f;
+/* Whether what the row's finder patterns show inside is no reason to doubt it: their rings; or, where those cannot be
+ * seen, a waveform that leaves little unexplained. */
+static bool is_tape(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, float least_px)
+{
+    const tmi_rings rings = tmi_wave_rings(reader->view, &far->wave, row, &reader->result->stats.work);
+    if (row->explained < unresolved_min)
+        return rings.strength > 0.5f && rings.strength < 3 && rings.share > 0.1f;
+    return least_px < rings_px || rings.strength > 0.2f;
+}
 
 static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
 {
-    tmi_tm_reading tm;
-    read_lines(reader, far, row, &tm);
-    const bool agrees = tm.vote > 0 && (tm.code ^ row->dark) != 0;
-    (void)agrees;
-    tm.bars = 0.71f * (1 - 5 * (1 - row->explained));
-    const float turn = turn_of(reader, far, row);
-    const tmi_rings rings = tmi_wave_rings(reader->view, &far->wave, row, &reader->result->stats.work);
     const float least_px = real_min(row->module, far->wave.stripe.height * (1.0f / TAPEMARK_HEIGHT_MODULES));
-    const bool visible = least_px > rings_px, ringed = rings.strength > 0.5f && rings.strength < 3 && rings.share > 0.1f;
-    if (visible ? !ringed : row->explained < unresolved_min)
+    if (!is_tape(reader, far, row, least_px))
         return;
+    const bool has_bars = row->cm_count >= TAPEMARK_TM_MIN_CMS && row->bars[0] > bars_min && row->bars[1] > bars_min;
+    tmi_tm_reading tm;
+    if (has_bars)
+        read_lines(reader, far, row, &tm);
+    tm.bars = 1 - 5 * (1 - row->explained);
+    const float turn = turn_of(reader, far, row);
     lay_out(far, row);
-    const bool is_tm = row->bars[0] > bars_min && row->bars[1] > bars_min && row->explained >= explained_min && row->cm_count >= TAPEMARK_TM_MIN_CMS;
-    tmi_segment_read_far(reader, &far->segment, row->cm_count, is_tm ? &tm : NULL, real_abs(turn) > turn_min ? turn : 0);
+    tmi_segment_read_far(reader, &far->segment, row->cm_count, has_bars ? &tm : NULL,
+                         real_abs(turn) > turn_min ? turn : 0, least_px > words_px);
 }
+
+/* ---- Stripes ----------------------------------------------------------------------------------------------------
+ */
 
 static bool holds(const tapemark_point corners[4], tmi_point at)
 {
@@ -138,38 +153,79 @@ static bool holds(const tapemark_point corners[4], tmi_point at)
     return true;
 }
 
-/* Whether a marker was read at this place. */
-static bool is_read(const tapemark_result *result, tmi_point at, bool cms)
+static float height_of(const tapemark_point corners[4])
 {
-    for (size_t i = 0; cms && i < result->cm_count; i++)
-        if (holds(result->cms[i].corners, at))
+    const float x = corners[3].x_px - corners[0].x_px, y = corners[3].y_px - corners[0].y_px;
+    return real_sqrt(x * x + y * y);
+}
+
+/* Near tapes are read one finder pattern after the other; that is as good as it gets from this height on, px. */
+static const float near_px = 10.5f;
+
+/* Whether what was read at this place leaves nothing to be found by a stripe of this height: a TM, or a CM that is
+ * near, or much higher. */
+static bool is_read(const tapemark_result *result, tmi_point at, float height)
+{
+    for (size_t i = 0; i < result->cm_count; i++) {
+        const float cm_height = height_of(result->cms[i].corners);
+        if ((cm_height > near_px || cm_height > 1.5f * height) && holds(result->cms[i].corners, at))
             return true;
+    }
     for (size_t i = 0; i < result->tm_count; i++)
         if (holds(result->tms[i].corners, at))
             return true;
     return false;
 }
 
+/* Whether more than half of it lies on markers that were read. */
 static bool is_covered(const tapemark_result *result, const tmi_stripe *stripe)
 {
     int inside = 0;
     for (int i = -2; i <= 2; i++) {
         const float t = 0.4f * (float)i * stripe->half_length;
-        inside += is_read(result, (tmi_point){stripe->middle.x + t * stripe->along.x, stripe->middle.y + t * stripe->along.y}, false);
+        const tmi_point at = {stripe->middle.x + t * stripe->along.x, stripe->middle.y + t * stripe->along.y};
+        inside += is_read(result, at, stripe->height);
     }
     return inside > 2;
+}
+
+/* Leaves out the strokes of markers that were read. */
+static void drop_read(const tapemark_result *result, tmi_strokes *strokes)
+{
+    int kept = 0;
+    for (int i = 0; i < strokes->count; i++) {
+        const tmi_stroke *s = &strokes->at[i];
+        if (!is_read(result, tmi_stroke_at(s), tmi_stroke_width(s)))
+            strokes->at[kept++] = *s;
+    }
+    strokes->count = kept;
 }
 
 /* Makes the stripe as long as the row, so that the wave is sampled around it. */
 static void centre_on(tmi_stripe *stripe, tmi_row *row)
 {
-    const float left = tmi_row_px(row, (float)(PITCH * row->first)), right = tmi_row_px(row, (float)(PITCH * (row->first + row->cm_count)));
+    const float left = tmi_row_px(row, (float)(PITCH * row->first)),
+                right = tmi_row_px(row, (float)(PITCH * (row->first + row->cm_count)));
     const float middle = 0.5f * (left + right);
-    stripe->middle = (tmi_point){stripe->middle.x + middle * stripe->along.x, stripe->middle.y + middle * stripe->along.y};
+    stripe->middle =
+        (tmi_point){stripe->middle.x + middle * stripe->along.x, stripe->middle.y + middle * stripe->along.y};
     stripe->height += middle * stripe->taper;
     stripe->half_length = 0.5f * (right - left);
     row->origin -= middle;
 }
+
+/* Beyond the stripe's ends there may be a finder pattern, a light CM before it, bars and the quiet zone: about this
+ * many heights. */
+static const float margin_heights = 6;
+
+static void sample_all(const tmi_reader *reader, tmi_far *far, const tmi_stripe *stripe)
+{
+    tmi_wave_sample(reader->view, stripe, stripe->half_length + margin_heights * stripe->height, 0.5f, &far->wave,
+                    &reader->result->stats.work);
+}
+
+/* Heights within which a row is believed, px: somewhat more than what strokes are noted for. */
+static const float height_min_px = 2, height_max_px = 16;
 
 /* Fits row and stripe to each other in turn. */
 static bool settle(const tmi_reader *reader, tmi_far *far, tmi_stripe *stripe, tmi_row *row)
@@ -177,8 +233,7 @@ static bool settle(const tmi_reader *reader, tmi_far *far, tmi_stripe *stripe, t
     uint32_t *work = &reader->result->stats.work;
     int cm_count = 0;
     for (int pass = 0; pass < 8; pass++) {
-        if (pass > 0)
-            tmi_wave_sample(reader->view, stripe, &far->wave, work);
+        sample_all(reader, far, stripe);
         if (!tmi_wave_fit_row(&far->wave, row, work))
             return false;
         if (row->explained < (pass == 0 ? 0.75f : explained_min))
@@ -186,33 +241,42 @@ static bool settle(const tmi_reader *reader, tmi_far *far, tmi_stripe *stripe, t
         if (pass > 1 && row->cm_count == cm_count)
             return true;
         cm_count = row->cm_count;
-        if (!tmi_wave_fit_across(reader->view, &far->wave, row, stripe, work))
+        if (!tmi_wave_fit_across(reader->view, &far->wave, row, stripe, work) || stripe->height < height_min_px ||
+            stripe->height > height_max_px)
             return false;
         centre_on(stripe, row);
     }
     return true;
 }
 
-static bool locate(const tmi_reader *reader, tmi_far *far, const tmi_stripe *found, tmi_row *row)
+/* Guesses are made from about five pitches: over more of them, pitches would have to be tried in smaller steps, and
+ * perspective would tell. */
+static const float guess_heights = 9;
+
+/* Samples that are enough to see whether there is anything but a line, and to guess from; in heights. */
+static const float glance_step = 0.35f, guess_step = 0.1f;
+
+/* The guess that fits best of those made from where the strokes are; false where none is any good. */
+static bool guess_row(const tmi_reader *reader, tmi_far *far, const tmi_stripe *stripe, tmi_row *row)
 {
     uint32_t *work = &reader->result->stats.work;
     tmi_guess guesses[TMI_GUESSES];
-    tmi_wave_sample(reader->view, found, &far->wave, work);
+    const float height = stripe->height;
+    const float reach = real_min(stripe->half_length + 0.8f * height, guess_heights * height);
+    tmi_wave_sample(reader->view, stripe, reach, glance_step * height, &far->wave, work);
+    if (tmi_wave_is_flat(&far->wave))
+        return false;
+    tmi_wave_sample(reader->view, stripe, reach, real_max(0.5f, guess_step * height), &far->wave, work);
     tmi_wave_guess_rows(&far->wave, &far->sums, guesses, work);
-    for (;;) {
-        int best = 0;
-        for (int i = 1; i < TMI_GUESSES; i++)
-            if (guesses[i].gain > guesses[best].gain)
-                best = i;
-        if (guesses[best].gain == 0)
-            return false;
-        tmi_stripe stripe = *found;
-        *row = (tmi_row){.origin = guesses[best].origin, .module = guesses[best].module, .cm_count = guesses[best].cm_count};
-        guesses[best].gain = 0;
-        tmi_wave_sample(reader->view, found, &far->wave, work);
-        if (settle(reader, far, &stripe, row) && row->explained > 0.85f)
-            return true;
+    row->explained = 0;
+    for (int i = 0; i < 2 * TMI_GUESSES; i++) {
+        const tmi_guess *guess = &guesses[i / 2];
+        tmi_row tried = {
+            .origin = guess->origin, .module = guess->module, .cm_count = guess->cm_count, .turned = i % 2};
+        if (guess->gain > 0 && tmi_wave_fit_guess(&far->wave, &tried, work) && tried.explained > row->explained)
+            *row = tried;
     }
+    return row->explained > 0;
 }
 
 void tmi_far_read(const tmi_reader *reader, tmi_strokes *strokes, tmi_far *far)
@@ -220,8 +284,10 @@ void tmi_far_read(const tmi_reader *reader, tmi_strokes *strokes, tmi_far *far)
     tmi_stripe stripe;
     tmi_row row;
     far->wave.prints.reach = 0;
+    drop_read(reader->result, strokes);
     tmi_strokes_chain(strokes);
     while (tmi_may_go_on(reader) && tmi_strokes_next_stripe(strokes, &stripe))
-        if (!is_covered(reader->result, &stripe) && locate(reader, far, &stripe, &row))
+        if (!is_covered(reader->result, &stripe) && guess_row(reader, far, &stripe, &row) &&
+            settle(reader, far, &stripe, &row))
             read_row(reader, far, &row);
 }

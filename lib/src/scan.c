@@ -91,26 +91,26 @@ enum { STROKE_SKEW = 3 };
 
 static void note_stroke(const scan_line *scan, const tmi_scan *line)
 {
-    const int before = scan->level[EDGES - 1 - 1], dark = scan->level[EDGES - 1], after = scan->previous;
+    const int before = scan->level[EDGES - 2], dark = scan->level[EDGES - 1], after = scan->previous;
     const int less = (before < after ? before : after) - dark, more = (before > after ? before : after) - dark;
     if (STROKE_SKEW * less >= more)
         tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[EDGES - 2], scan->edge[EDGES - 1],
                         less);
 }
 
-static void report(const scan_line *scan, const tmi_scan *line, tmi_hit_function on_hit, void *context)
+/* Looks back from the end of something dark: notes it as a stroke, and tells whether it may be a finder's. */
+static bool looks_back(const scan_line *scan, const tmi_scan *line, tmi_hit *hit)
 {
-    tmi_hit hit;
     if (scan->rising)
-        return;
-    if (scan->edges >= EDGES && looks_like_finder(scan, &hit)) {
-        on_hit(context, line->number, &hit);
-        if (line->strokes)
+        return false;
+    const bool found = scan->edges >= EDGES && looks_like_finder(scan, hit);
+    if (line->strokes && scan->edges >= 2) {
+        if (found)
             tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[0], scan->edge[EDGES - 1],
-                            (int)hit.contrast);
-    }
-    if (line->strokes && scan->edges >= 2)
+                            (int)hit->contrast);
         note_stroke(scan, line);
+    }
+    return found;
 }
 
 /* Goes on to the next extreme within the tile: the first pixel from `from` on that lies `least` below (while
@@ -140,6 +140,7 @@ int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *conte
         .pixels = line->pixels, .step = line->step, .invert = line->invert, .previous = NO_EXTREME, .rising = true};
     int32_t read = 0;
     int extreme = 0;
+    tmi_hit hit;
     for (int32_t word = 0; word < line->words; word++)
         for (uint32_t bits = line->active[word]; bits; bits &= bits - 1) {
             const int32_t tile = 32 * word + __builtin_ctz(bits), start = tile * TILE;
@@ -149,12 +150,14 @@ int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *conte
             for (int32_t i = start; (i = next_turn(&scan, i, end, swing, &extreme)) < end; i++) {
                 finish_extreme(&scan, extreme, i);
                 extreme = gray(&scan, i);
-                report(&scan, line, on_hit, context);
+                if (looks_back(&scan, line, &hit))
+                    on_hit(context, line->number, &hit);
             }
         }
     if (scan.rising && scan.previous != NO_EXTREME) { /* the light margin of a pattern at the line's end */
         finish_extreme(&scan, extreme, line->length);
-        report(&scan, line, on_hit, context);
+        if (looks_back(&scan, line, &hit))
+            on_hit(context, line->number, &hit);
     }
     return read;
 }

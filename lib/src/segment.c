@@ -266,8 +266,8 @@ static float vouched(const tapemark_reject *reasons, int first, int count)
 static void tm_corners(const tmi_segment *segment, int first, int count, bool turned, tapemark_point corners[4])
 {
     const float ink = 3.5f + TAPEMARK_BAR_MODULES;
-    set_corners(&segment->maps[first], &segment->maps[first + count - 1], ink, TAPEMARK_CM_PITCH_MODULES + ink, turned,
-                corners);
+    set_corners(&segment->maps[first], &segment->maps[first + count - 1], ink, TAPEMARK_CM_PITCH_MODULES + ink,
+                turned, corners);
 }
 
 /* Reads a part that lies in the image and has bars at both ends. */
@@ -279,7 +279,8 @@ static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segme
     return inside(reader->view, corners) && tmi_tm_read(reader, segment, first, count, bars_min, reading);
 }
 
-/* Adds a TM to the result that was read so, if its vote is enough and the CMs agree. Returns its index, or TMI_NONE. */
+/* Adds a TM to the result that was read so, if its vote is enough and the CMs agree. Returns its index, or TMI_NONE.
+ */
 static int add_tm(const tmi_reader *reader, const tmi_segment *segment, const tapemark_reject *reasons, int first,
                   int count, float turn, const tmi_tm_reading *reading)
 {
@@ -451,41 +452,67 @@ static float turn_of(const tapemark_cm *cm, const tmi_homography *map)
            (cm->corners[1].y_px - cm->corners[0].y_px) * (b.y - a.y);
 }
 
-void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm_count, const tmi_tm_reading *tm,
-                          float turn)
+/* Takes over what was read before. */
+static void take_over(const tmi_reader *reader, tmi_segment *segment, int cm)
 {
-    tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
-    tapemark_result *result = reader->result;
+    const int known = read_before(reader, &segment->maps[cm]);
+    if (known == TMI_NONE)
+        return;
+    const tapemark_cm *read = &reader->result->cms[known];
+    const int way = turn_of(read, &segment->maps[cm]) > 0 ? UPRIGHT : TURNED;
+    segment->readings[way][cm] = (tmi_reading){.id = read->id, .score = 1, .odds = 4};
+    segment->readings[!way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = 0, .odds = 1};
+}
+
+/* Reads what can be read of the CMs. Where none can, they say nothing: neither way up, nor that something covers
+ * them. */
+static void read_cms(const tmi_reader *reader, tmi_segment *segment, int cm_count, bool resolved)
+{
     for (int cm = 0; cm < cm_count; cm++) {
-        if (tmi_may_go_on(reader))
+        reader->result->stats.cms_tried++;
+        if (resolved && tmi_may_go_on(reader))
             read_both_ways(reader, segment, cm);
         else
-            segment->readings[UPRIGHT][cm] = segment->readings[TURNED][cm] =
-                (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
+            for (int way = UPRIGHT; way <= TURNED; way++)
+                segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = cm_score, .odds = 1};
+        take_over(reader, segment, cm);
     }
+}
+
+/* Appends a CM that is believed, or tells the one that was read before which TM it belongs to. */
+static void report_far_cm(const tmi_reader *reader, const tmi_segment *segment, int cm, bool turned, int tm, int slot,
+                          tapemark_reject reason)
+{
+    tapemark_result *result = reader->result;
+    const int known = read_before(reader, &segment->maps[cm]);
+    if (known != TMI_NONE && tm != TMI_NONE) {
+        result->cms[known].tm = (int16_t)tm;
+        result->cms[known].slot = (int16_t)slot;
+    } else if (known == TMI_NONE && reason == BELIEVED) {
+        result->stats.cms_read++;
+        report_cm(reader, segment, cm, turned, tm, slot);
+    } else if (known == TMI_NONE) {
+        result->stats.rejects[reason]++;
+    }
+}
+
+void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm_count, const tmi_tm_reading *tm,
+                          float turn, bool resolved)
+{
+    tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
+    reader->result->stats.segments++;
+    read_cms(reader, segment, cm_count, resolved);
     float evidence = turn_evidence(segment, 0, cm_count);
     judge_part(reader, segment, 0, cm_count, evidence, reasons);
-    for (int cm = 0; cm < cm_count; cm++) {
-        const int known = read_before(reader, &segment->maps[cm]);
-        if (known == TMI_NONE)
-            continue;
-        (void)turn_of;
-    }
     if (real_abs(evidence) < turn_min)
         evidence = turn != 0 ? turn : turn_hint(reader, segment, 0, cm_count);
     const bool turned = evidence < 0;
-    int index = TMI_NONE;
-    if (tm)
-        index = add_tm(reader, segment, reasons, 0, cm_count, evidence, tm);
+    tapemark_point corners[4];
+    tm_corners(segment, 0, cm_count, false, corners);
+    const bool is_tm = tm && inside(reader->view, corners);
+    const int index = is_tm ? add_tm(reader, segment, reasons, 0, cm_count, evidence, tm) : TMI_NONE;
     for (int slot = 0; slot < cm_count; slot++) {
-        const int cm = turned ? cm_count - 1 - slot : slot, known = read_before(reader, &segment->maps[cm]);
-        if (known != TMI_NONE && index != TMI_NONE) {
-            result->cms[known].tm = (int16_t)index;
-            result->cms[known].slot = (int16_t)slot;
-        }
-        if (known != TMI_NONE || reasons[cm] != BELIEVED)
-            continue;
-        result->stats.cms_read++;
-        report_cm(reader, segment, cm, turned, index, slot);
+        const int cm = turned ? cm_count - 1 - slot : slot;
+        report_far_cm(reader, segment, cm, turned, index, slot, reasons[cm]);
     }
 }

@@ -31,9 +31,9 @@ typedef struct tmi_tm_reading {
 } tmi_tm_reading;
 
 /* Reads a row of CMs located as a whole, whose finders and maps are in the segment. `tm` is NULL where it has no
- * bars; `turn` is which way up its blocks say it is, or 0. */
+ * bars; `turn` is which way up its blocks say it is, or 0; `resolved`: whether words may be told from each other. */
 void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm_count, const tmi_tm_reading *tm,
-                          float turn);
+                          float turn, bool resolved);
 
 /* Reads the segment of `finder_count` finders already copied to segment->finders, and appends what is sure to
  * the result. */

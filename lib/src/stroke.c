@@ -4,10 +4,13 @@
 #include "real.h"
 
 /* Heights of what may be a tape, px: below, its blocks are not seen apart; above, finder patterns are. */
-static const float narrowest_px = 2.7f, widest_px = 15.5f;
+static const float narrowest_px = 2.7f, widest_px = 12;
 
 /* A stripe has this many strokes at least. */
-enum { STROKES_MIN = 4 };
+enum { STROKES_MIN = 5 };
+
+/* And it is this many times as long as it is high: three CMs between their finder patterns, seen at an angle. */
+static const float length_min = 6.5f;
 
 void tmi_strokes_clear(tmi_strokes *strokes)
 {
@@ -50,16 +53,6 @@ void tmi_strokes_add(tmi_strokes *strokes, int32_t line, bool vertical, float fr
 
 /* ---- Chains ---------------------------------------------------------------------------------------------------- */
 
-static float width_px(const tmi_stroke *s)
-{
-    return (float)s->width * (1.0f / 8);
-}
-
-static float centre_px(const tmi_stroke *s)
-{
-    return (float)s->centre + (float)s->centre_part * (1.0f / 256);
-}
-
 static uint32_t order(const tmi_stroke *s)
 {
     return (uint32_t)s->line + (s->vertical ? 65536u : 0u);
@@ -81,20 +74,21 @@ static void sort(tmi_strokes *strokes)
 }
 
 /* Whether b, further on, may follow the chain that a ends. From one finder pattern to the next there may be nothing
- * but a light CM: 25 modules, where the stroke has seven. */
+ * but a light CM: 25 modules, where the stroke has seven. Where the direction is known, one finder may be missing. */
 static bool may_follow(const tmi_stroke *at, const tmi_stroke *a, const tmi_stroke *b, float *error)
 {
-    const float dx = (float)(b->line - a->line), wa = width_px(a), wb = width_px(b), w = 0.5f * (wa + wb);
-    if (dx > 4 * w + 4 || real_abs(wa - wb) > 0.2f * w + 0.6f || a->contrast > 3 * b->contrast ||
+    const float dx = (float)(b->line - a->line), wa = tmi_stroke_width(a), wb = tmi_stroke_width(b),
+                w = 0.5f * (wa + wb);
+    if (dx > (a->count < 3 ? 4 : 7) * w + 4 || real_abs(wa - wb) > 0.2f * w + 0.6f || a->contrast > 3 * b->contrast ||
         b->contrast > 3 * a->contrast)
         return false;
-    const float dy = centre_px(b) - centre_px(a);
+    const float dy = tmi_stroke_centre(b) - tmi_stroke_centre(a);
     *error = 0.2f * real_abs(dy);
     if (a->count < 2)
         return real_abs(dy) <= 1.15f * dx;
     const tmi_stroke *first = &at[a->first];
     const float base = (float)(a->line - first->line), slack = 0.5f + 0.1f * w;
-    *error = real_abs(dy - (centre_px(a) - centre_px(first)) / base * dx);
+    *error = real_abs(dy - (tmi_stroke_centre(a) - tmi_stroke_centre(first)) / base * dx);
     return *error <= slack * (1 + dx / base);
 }
 
@@ -108,7 +102,8 @@ void tmi_strokes_chain(tmi_strokes *strokes)
         s->first = (int16_t)i;
         s->before = -1;
         float least = 0;
-        for (int j = i - 1; j >= 0 && order(&at[j]) + 68 >= order(s); j--) {
+        const uint32_t reach = (uint32_t)(7.5f * tmi_stroke_width(s)) + 6;
+        for (int j = i - 1; j >= 0 && order(&at[j]) + reach >= order(s); j--) {
             float error;
             if (at[j].line == s->line || at[j].vertical != s->vertical || !may_follow(at, &at[j], s, &error))
                 continue;
@@ -138,11 +133,11 @@ static bool fit_lines(const tmi_strokes *strokes, int last, float middle, float 
     for (int i = last; i >= 0; i = strokes->at[i].before) {
         const tmi_stroke *s = &strokes->at[i];
         const float x = (float)s->line - middle;
-        if (real_abs(centre_px(s) - lines->centre[0] - lines->centre[1] * x) > reach ||
-            real_abs(width_px(s) - lines->width[0] - lines->width[1] * x) > 2 * reach)
+        if (real_abs(tmi_stroke_centre(s) - lines->centre[0] - lines->centre[1] * x) > reach ||
+            real_abs(tmi_stroke_width(s) - lines->width[0] - lines->width[1] * x) > 2 * reach)
             continue;
-        tmi_normal_add(&centre, 1, x, 0, centre_px(s), 1);
-        tmi_normal_add(&width, 1, x, 0, width_px(s), 1);
+        tmi_normal_add(&centre, 1, x, 0, tmi_stroke_centre(s), 1);
+        tmi_normal_add(&width, 1, x, 0, tmi_stroke_width(s), 1);
     }
     return tmi_normal_solve(&centre, lines->centre) && tmi_normal_solve(&width, lines->width);
 }
@@ -154,7 +149,7 @@ static void use_up(tmi_strokes *strokes, bool vertical, float from, float to, co
         tmi_stroke *s = &strokes->at[i];
         const float x = (float)s->line - middle;
         if (s->vertical == vertical && (float)s->line >= from && (float)s->line <= to &&
-            real_abs(centre_px(s) - lines->centre[0] - lines->centre[1] * x) < 0.5f * lines->width[0])
+            real_abs(tmi_stroke_centre(s) - lines->centre[0] - lines->centre[1] * x) < 0.5f * lines->width[0])
             s->count = 0;
     }
 }
@@ -207,8 +202,8 @@ bool tmi_strokes_next_stripe(tmi_strokes *strokes, tmi_stripe *stripe)
         int first = last;
         float width = 0, centre = 0, contrast = 0;
         for (int i = last; i >= 0; i = strokes->at[i].before) {
-            width += width_px(&strokes->at[i]) / (float)count;
-            centre += centre_px(&strokes->at[i]) / (float)count;
+            width += tmi_stroke_width(&strokes->at[i]) / (float)count;
+            centre += tmi_stroke_centre(&strokes->at[i]) / (float)count;
             contrast += (float)strokes->at[i].contrast / (float)count;
             first = i;
         }
@@ -224,7 +219,7 @@ bool tmi_strokes_next_stripe(tmi_strokes *strokes, tmi_stripe *stripe)
         use_up(strokes, strokes->at[last].vertical, from, to, &lines);
         strokes->at[last].count = 0;
         *stripe = stripe_of(&strokes->at[last], from, &lines, contrast);
-        if (2 * stripe->half_length > 5 * stripe->height && stripe->height > 2)
+        if (2 * stripe->half_length > length_min * stripe->height)
             return true;
     }
     return false;

@@ -10,15 +10,32 @@
 enum { TMI_MAX_STROKES = 760 };
 
 typedef struct tmi_stroke {
-    uint16_t line;            /* the scan line */
-    uint16_t centre;          /* along it, in whole px and 1/256 px */
+    uint16_t line;   /* the scan line */
+    uint16_t centre; /* along it, in whole px and 1/256 px */
     uint8_t centre_part;
-    uint8_t contrast;         /* gray levels */
-    int16_t first, before;    /* of the chain that it ends: first stroke, and the one before it, or -1 */
-    uint8_t width : 7;        /* 1/8 px */
-    bool vertical : 1;        /* the scan line is a column */
-    uint8_t count;            /* strokes of the chain that it ends; 0: used up */
+    uint8_t contrast;      /* gray levels */
+    int16_t first, before; /* of the chain that it ends: first stroke, and the one before it, or -1 */
+    uint8_t width : 7;     /* 1/8 px */
+    bool vertical : 1;     /* the scan line is a column */
+    uint8_t count;         /* strokes of the chain that it ends; 0: used up */
 } tmi_stroke;
+
+static inline float tmi_stroke_width(const tmi_stroke *s)
+{
+    return (float)s->width * (1.0f / 8);
+}
+
+/* Along its scan line, px. */
+static inline float tmi_stroke_centre(const tmi_stroke *s)
+{
+    return (float)s->centre + (float)s->centre_part * (1.0f / 256);
+}
+
+static inline tmi_point tmi_stroke_at(const tmi_stroke *s)
+{
+    const float line = (float)s->line, centre = tmi_stroke_centre(s);
+    return s->vertical ? (tmi_point){line, centre} : (tmi_point){centre, line};
+}
 
 typedef struct tmi_strokes {
     int count;

@@ -5,17 +5,14 @@
 
 enum { PITCH = TAPEMARK_CM_PITCH_MODULES, HEIGHT = TAPEMARK_HEIGHT_MODULES };
 
-/* ---- Sampling ---------------------------------------------------------------------------------------------------- */
+/* ---- Sampling ----------------------------------------------------------------------------------------------------
+ */
 
-/* Beyond the stripe's ends there may be a finder pattern, a light CM before it, bars and the quiet zone: about this
- * many heights. */
-static const float margin_heights = 6;
-
-void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, tmi_wave *wave, uint32_t *reads)
+void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, float reach, float step, tmi_wave *wave,
+                     uint32_t *reads)
 {
-    const float reach = stripe->half_length + margin_heights * stripe->height;
     wave->stripe = *stripe;
-    wave->step = real_max(0.5f, 2 * reach / (TMI_WAVE_SAMPLES - 1));
+    wave->step = real_max(step, 2 * reach / (TMI_WAVE_SAMPLES - 1));
     wave->start = -reach;
     wave->count = (int)(2 * reach / wave->step) + 1;
     const tmi_point e = stripe->along;
@@ -31,16 +28,17 @@ void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, tmi_wave *w
     *reads += (uint32_t)(HEIGHT * wave->count);
 }
 
-/* ---- What a row looks like ------------------------------------------------------------------------------------------ */
+/* ---- What a row looks like
+ * ------------------------------------------------------------------------------------------ */
 
 /* Share of dark in each of a finder pattern's columns, and in those of a coding region: of a light CM, and of a dark
  * one; checksum cells as often dark as not, and a few data cells changed. */
 enum { FINDER_COLUMNS = 7, BLOCK_COLUMNS = TAPEMARK_CELL_COLUMNS, BARS_COLUMNS = 7 };
 static const float finder_dark[FINDER_COLUMNS] = {1, 2 / 7.0f, 5 / 7.0f, 5 / 7.0f, 5 / 7.0f, 2 / 7.0f, 1};
 static const float light_dark[BLOCK_COLUMNS] = {1,    .17f, .31f, .17f, .17f, .31f, .17f, .17f,
-                                     .31f, .17f, .17f, .17f, .17f, .31f, .15f, .29f};
+                                                .31f, .17f, .17f, .17f, .17f, .31f, .15f, .29f};
 static const float dark_dark[BLOCK_COLUMNS] = {1,    .97f, .83f, .97f, .97f, .83f, .97f, .97f,
-                                    .83f, .97f, .97f, .97f, .97f, .83f, .7f,  .86f};
+                                               .83f, .97f, .97f, .97f, .97f, .83f, .7f,  .86f};
 
 static const float bars_dark[BARS_COLUMNS] = {1, 0, 1, 0, 1, 0, 1};
 
@@ -48,6 +46,7 @@ typedef struct row_print {
     const tmi_prints *prints;
     int first, cm_count; /* finder 0 is at u = 0 */
     uint32_t dark;
+    bool turned;  /* its coding regions are seen standing on the head */
     bool bars[2]; /* at the left and the right end */
 } row_print;
 
@@ -100,12 +99,26 @@ static void prepare_prints(tmi_prints *prints, float module_px)
 static void add_part(const float *table, int count, float u, blurred *sum)
 {
     const float at = (u + TMI_BLUR_MAX) * TMI_PRINT_STEPS;
-    const int i = (int)at;
-    if (at < 0 || i + 1 >= TMI_PRINT_ENTRIES(count))
+    if (!(at >= 0 && at < (float)(TMI_PRINT_ENTRIES(count) - 1)))
         return;
+    const int i = (int)at;
     const float rise = table[i + 1] - table[i];
     sum->value += table[i] + (at - (float)i) * rise;
     sum->slope += TMI_PRINT_STEPS * rise;
+}
+
+/* Adds a coding region whose first column as seen is at u = 0. */
+static void add_block(const row_print *print, int cm, float u, blurred *sum)
+{
+    const float *table = print->dark >> cm & 1 ? print->prints->dark : print->prints->light;
+    if (!print->turned) {
+        add_part(table, BLOCK_COLUMNS, u, sum);
+        return;
+    }
+    blurred turned = {0, 0};
+    add_part(table, BLOCK_COLUMNS, BLOCK_COLUMNS - 1 - u, &turned);
+    sum->value += turned.value;
+    sum->slope -= turned.slope;
 }
 
 /* Share of dark at u, blurred. */
@@ -121,10 +134,10 @@ static blurred row_dark(const row_print *print, float u)
     add_part(p->finder, FINDER_COLUMNS, at + 3, &sum);
     if (cm < print->cm_count) {
         add_part(p->finder, FINDER_COLUMNS, at - (PITCH - 3), &sum);
-        add_part(print->dark >> cm & 1 ? p->dark : p->light, BLOCK_COLUMNS, at - 5, &sum);
+        add_block(print, cm, at - 5, &sum);
     }
     if (cm > 0)
-        add_part(print->dark >> (cm - 1) & 1 ? p->dark : p->light, BLOCK_COLUMNS, at + (PITCH - 5), &sum);
+        add_block(print, cm - 1, at + (PITCH - 5), &sum);
     if (print->bars[0])
         add_part(p->bars, BARS_COLUMNS, from + 11, &sum);
     if (print->bars[1])
@@ -132,24 +145,21 @@ static blurred row_dark(const row_print *print, float u)
     return sum;
 }
 
-/* ---- First look ------------------------------------------------------------------------------------------------------ */
+/* ---- First look
+ * ------------------------------------------------------------------------------------------------------ */
 
-static void sum_up(const tmi_wave *wave, float from, float to, tmi_wave_sums *sums)
+static void sum_up(const tmi_wave *wave, tmi_wave_sums *sums)
 {
-    int first = (int)((from - wave->start) / wave->step), last = (int)((to - wave->start) / wave->step);
-    first = first < 0 ? 0 : first;
-    last = last > wave->count ? wave->count : last;
-    sums->per_sum = 1 + (last - first - 1) / TMI_SUMS;
-    sums->first = first;
-    sums->count = (last - first) / sums->per_sum;
+    sums->per_sum = 1 + (wave->count - 1) / TMI_SUMS;
+    sums->count = wave->count / sums->per_sum;
     sums->sum[0] = sums->squares[0] = 0;
     float mean = 0;
-    for (int i = first; i < last; i++)
-        mean += (float)wave->value[i] * (1.0f / 64) / (float)(last - first);
+    for (int i = 0; i < wave->count; i++)
+        mean += (float)wave->value[i] * (1.0f / 64) / (float)wave->count;
     for (int i = 0; i < sums->count; i++) {
         float value = 0;
         for (int j = 0; j < sums->per_sum; j++)
-            value += (float)wave->value[first + i * sums->per_sum + j];
+            value += (float)wave->value[i * sums->per_sum + j];
         value = value * (1.0f / 64) / (float)sums->per_sum - mean;
         sums->sum[i + 1] = sums->sum[i] + value;
         sums->squares[i + 1] = sums->squares[i] + value * value;
@@ -220,9 +230,8 @@ static float coarse_gain(const tmi_wave_sums *s, float origin, float pitch, int 
 /* Part of the wave's variance that a first look has to explain. */
 static const float coarse_min = 0.35f;
 
-/* Guesses are made from about five pitches: over more of them, pitches would have to be tried in smaller steps, and
- * perspective would tell. Over these, half a step makes a module at the ends. */
-static const float guess_heights = 18, pitch_step = 0.965f;
+/* Over five pitches, half a step makes a module at the ends. */
+static const float pitch_step = 0.95f;
 
 /* The pitch that explains most, between two bounds in sums. */
 static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least, float most, tmi_guess *guess,
@@ -232,7 +241,7 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
     uint32_t tried = 0;
     *guess = (tmi_guess){0};
     for (float pitch = most; pitch > least; pitch *= pitch_step) {
-        const float hop = real_max(0.5f, pitch * (1.0f / PITCH));
+        const float hop = real_max(0.5f, pitch * (1.25f / PITCH));
         for (float origin = 0; origin < pitch; origin += hop) {
             int first = 0, count;
             float share = 0;
@@ -241,8 +250,7 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
             if (gain <= guess->gain || share < coarse_min)
                 continue;
             *guess = (tmi_guess){.gain = gain,
-                                 .origin = wave->start + wave->step * (float)s->first +
-                                           unit * (origin + pitch * (float)first),
+                                 .origin = wave->start + unit * (origin + pitch * (float)first),
                                  .module = unit * pitch * (1.0f / PITCH),
                                  .cm_count = count};
         }
@@ -251,18 +259,34 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
 }
 
 /* A tape seen at an angle has narrower modules than its height tells: three octaves' parts. */
-static const float pitch_bounds[TMI_GUESSES + 1] = {1.15f, 0.8f, 0.57f, 0.4f};
+static const float pitch_bounds[TMI_GUESSES + 1] = {1.15f, 0.85f, 0.63f, 0.47f};
+
+/* The wave along a tape rises and falls by more than this part of its strokes' contrast; along a lone line, a gap
+ * between boards or a shadow's edge it does not. Standard deviation. */
+static const float swing_min = 0.15f;
+
+bool tmi_wave_is_flat(const tmi_wave *wave)
+{
+    float sum = 0, squares = 0;
+    for (int i = 0; i < wave->count; i++) {
+        const float value = (float)(wave->value[i] - wave->value[0]) * (1.0f / 64);
+        sum += value;
+        squares += value * value;
+    }
+    const float n = (float)wave->count, swing = swing_min * wave->stripe.contrast;
+    return squares - sum * sum / n < swing * swing * n;
+}
 
 void tmi_wave_guess_rows(const tmi_wave *wave, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES], uint32_t *work)
 {
-    const float height = wave->stripe.height, reach = real_min(wave->stripe.half_length + 0.8f * height, 0.5f * guess_heights * height);
-    sum_up(wave, -reach, reach, sums);
-    const float full = height * ((float)PITCH / HEIGHT) / (wave->step * (float)sums->per_sum);
+    sum_up(wave, sums);
+    const float full = wave->stripe.height * ((float)PITCH / HEIGHT) / (wave->step * (float)sums->per_sum);
     for (int i = 0; i < TMI_GUESSES; i++)
         best_pitch(wave, sums, full * pitch_bounds[i + 1], full * pitch_bounds[i], &guesses[i], work);
 }
 
-/* ---- Fitting --------------------------------------------------------------------------------------------------------- */
+/* ---- Fitting
+ * --------------------------------------------------------------------------------------------------------- */
 
 static float sample_px(const tmi_wave *wave, int i)
 {
@@ -276,8 +300,8 @@ static float sample_gray(const tmi_wave *wave, int i)
 
 static int sample_at(const tmi_wave *wave, float px)
 {
-    const int i = (int)((px - wave->start) / wave->step + 0.5f);
-    return i < 0 ? 0 : i >= wave->count ? wave->count - 1 : i;
+    const float i = (px - wave->start) / wave->step + 0.5f;
+    return (int)real_min(real_max(i, 0), (float)(wave->count - 1)); /* a NaN ends up as 0 */
 }
 
 static float row_u(const tmi_row *row, float px)
@@ -288,8 +312,11 @@ static float row_u(const tmi_row *row, float px)
 
 static row_print print_of(const tmi_wave *wave, const tmi_row *row)
 {
-    return (row_print){
-        .prints = &wave->prints, .first = row->first, .cm_count = row->cm_count, .dark = row->dark};
+    return (row_print){.prints = &wave->prints,
+                       .first = row->first,
+                       .cm_count = row->cm_count,
+                       .dark = row->dark,
+                       .turned = row->turned};
 }
 
 /* Levels of light and dark by regression over the modules from..to; returns the share of variance explained. */
@@ -315,6 +342,9 @@ static float fit_levels(const tmi_wave *wave, const tmi_row *row, const row_prin
     *light = zero + (fit.y - gain * fit.x) / fit.n;
     return variance > 0 ? share / variance : 0;
 }
+
+/* Beyond these there is no tape that could be read. */
+static const float module_min_px = 0.2f, bend_max = 0.0025f;
 
 /* One step of fitting origin, module and bend to the samples between the modules from..to. */
 static bool fit_step(const tmi_wave *wave, tmi_row *row, const row_print *print, float from, float to, bool bends)
@@ -343,7 +373,8 @@ static bool fit_step(const tmi_wave *wave, tmi_row *row, const row_print *print,
     row->origin -= c0 * row->module;
     row->module *= 1 - c1;
     row->bend += c2;
-    return real_abs(row->bend) * PITCH < 0.06f;
+    const float nearest = 1 + row->bend * (row->bend < 0 ? to : from);
+    return row->module > module_min_px && real_abs(row->bend) < bend_max && nearest > 0.4f;
 }
 
 /* How far the wave is from the print over the modules from..to: root mean square, in parts of the depth. */
@@ -406,7 +437,7 @@ static bool fit_row(const tmi_wave *wave, tmi_row *row, int steps, uint32_t *wor
             !fit_step(wave, row, &print, left_end(row), right_end(row), row->cm_count > 3))
             return false;
     }
-    return row->module > 0.1f;
+    return true;
 }
 
 /* A finder and its block have to fit this well to belong to the row, and bars to be some. */
@@ -495,6 +526,12 @@ static bool fit_with_bars(const tmi_wave *wave, tmi_row *row, uint32_t *work)
     return true;
 }
 
+bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work)
+{
+    prepare_prints(&wave->prints, row->module);
+    return row->cm_count <= TAPEMARK_TM_MAX_CMS && fit_row(wave, row, FIT_STEPS, work);
+}
+
 bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work)
 {
     prepare_prints(&wave->prints, row->module);
@@ -514,14 +551,14 @@ bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work)
     return true;
 }
 
-/* ---- Across ---------------------------------------------------------------------------------------------------------- */
+/* ---- Across
+ * ---------------------------------------------------------------------------------------------------------- */
 
 /* A step from 0 to 1 at x = 0, blurred as row_dark() is. */
 static blurred step_up(float x, float reach)
 {
     const float t = real_max(-1, real_min(1, x / reach)), tt = t * t;
-    return (blurred){0.5f + 0.9375f * t * (1 - tt * (0.6667f - 0.2f * tt)),
-                     0.9375f * (1 - tt) * (1 - tt) / reach};
+    return (blurred){0.5f + 0.9375f * t * (1 - tt * (0.6667f - 0.2f * tt)), 0.9375f * (1 - tt) * (1 - tt) / reach};
 }
 
 enum { ACROSS = 21 }; /* samples across, half a module apart */
@@ -541,7 +578,8 @@ static void sample_across(const tmi_view *view, const tmi_wave *wave, const tmi_
         float sum = 0;
         for (int k = -3; k <= 3; k++) {
             const float t = tmi_row_px(row, u + (float)k);
-            sum += tmi_sample(view, wave->stripe.middle.x + t * e.x - v * e.y, wave->stripe.middle.y + t * e.y + v * e.x);
+            sum += tmi_sample(view, wave->stripe.middle.x + t * e.x - v * e.y,
+                              wave->stripe.middle.y + t * e.y + v * e.x);
         }
         dark[j] = (row->light - sum * (1.0f / 7)) / row->depth;
     }
@@ -552,8 +590,7 @@ static void sample_across(const tmi_view *view, const tmi_wave *wave, const tmi_
 static bool fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, float u, float *shift,
                        float *growth)
 {
-    const float module =
-        (wave->stripe.height + wave->stripe.taper * tmi_row_px(row, u)) * (1.0f / HEIGHT);
+    const float module = (wave->stripe.height + wave->stripe.taper * tmi_row_px(row, u)) * (1.0f / HEIGHT);
     const float reach = wave->prints.reach;
     const row_print finder = {.prints = &wave->prints};
     float seen[ACROSS];
@@ -579,9 +616,9 @@ static bool fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row
 bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, tmi_stripe *stripe,
                          uint32_t *reads)
 {
-    tmi_normal shift = {0}, growth = {0};
+    tmi_normal shift = {0};
+    float growth = 0;
     tmi_normal_add(&shift, 0, 0, 1, 0, 1);
-    tmi_normal_add(&growth, 0, 0, 1, 0, 1);
     const float half = 0.5f * (tmi_row_px(row, right_end(row)) - tmi_row_px(row, left_end(row)));
     int good = 0;
     for (int k = 0; k <= row->cm_count; k++) {
@@ -591,25 +628,26 @@ bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_r
         if (!fit_across(view, wave, row, u, &by, &more))
             continue;
         tmi_normal_add(&shift, 1, x, 0, by, 1);
-        tmi_normal_add(&growth, 1, x, 0, more, 1);
+        growth += more;
         good++;
     }
-    float p[3], q[3];
-    if (2 * good < row->cm_count + 1 || !tmi_normal_solve(&shift, p) || !tmi_normal_solve(&growth, q))
+    float p[3];
+    if (2 * good < row->cm_count + 1 || !tmi_normal_solve(&shift, p))
         return false;
     const tmi_stripe *old = &wave->stripe;
     const float tilt = p[1] / half;
     *stripe = *old;
     stripe->middle = (tmi_point){old->middle.x - p[0] * old->along.y, old->middle.y + p[0] * old->along.x};
     const float length = 1 / real_sqrt(1 + tilt * tilt);
-    stripe->along = (tmi_point){(old->along.x - tilt * old->along.y) * length,
-                                (old->along.y + tilt * old->along.x) * length};
-    stripe->height = old->height * (1 + q[0]);
-    stripe->taper = old->taper + old->height * q[1] / half;
+    stripe->along =
+        (tmi_point){(old->along.x - tilt * old->along.y) * length, (old->along.y + tilt * old->along.x) * length};
+    stripe->height = old->height * (1 + growth / (float)good);
+    stripe->taper = -row->bend * stripe->height / row->module;
     return true;
 }
 
-/* ---- What finders show inside ---------------------------------------------------------------------------------------- */
+/* ---- What finders show inside
+ * ---------------------------------------------------------------------------------------- */
 
 /* A line of 2 h modules around 0, blurred. */
 static float bar(float x, float h, float reach)

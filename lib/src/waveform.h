@@ -12,7 +12,7 @@ enum { TMI_WAVE_SAMPLES = 1024 };
 /* What the parts of a row look like: shares of dark, blurred, in tables of four entries a module. */
 #define TMI_BLUR_MAX 4
 #define TMI_PRINT_STEPS 4
-#define TMI_PRINT_ENTRIES(columns) (((columns) - 1 + 2 * TMI_BLUR_MAX) * TMI_PRINT_STEPS + 1)
+#define TMI_PRINT_ENTRIES(columns) (((columns)-1 + 2 * TMI_BLUR_MAX) * TMI_PRINT_STEPS + 1)
 typedef struct tmi_prints {
     float reach; /* modules over which they are blurred; 0: not yet filled in */
     float finder[TMI_PRINT_ENTRIES(7)], bars[TMI_PRINT_ENTRIES(7)];
@@ -32,7 +32,7 @@ typedef struct tmi_wave {
 enum { TMI_SUMS = 400 };
 typedef struct tmi_wave_sums {
     float sum[TMI_SUMS + 1], squares[TMI_SUMS + 1];
-    int first, per_sum; /* sample at which they begin, and samples in each */
+    int per_sum; /* samples in each */
     int count;
 } tmi_wave_sums;
 
@@ -41,10 +41,11 @@ typedef struct tmi_wave_sums {
 typedef struct tmi_row {
     float origin, module, bend;
     int first, cm_count;
-    uint32_t dark;     /* CM k is dark: bit k - first */
+    uint32_t dark;      /* CM k is dark: bit k - first */
+    bool turned;        /* it rather stands on the head, as the row runs */
     float light, depth; /* gray level of light modules, and how much darker dark ones are */
-    float explained;   /* share of the wave's variance, 0 to 1 */
-    float bars[2];     /* how well bars fit at the left and right end, up to 1 */
+    float explained;    /* share of the wave's variance, 0 to 1 */
+    float bars[2];      /* how well bars fit at the left and right end, up to 1 */
 } tmi_row;
 
 static inline float tmi_row_px(const tmi_row *row, float u)
@@ -61,8 +62,9 @@ static inline tmi_point tmi_row_at(const tmi_stripe *stripe, const tmi_row *row,
                        stripe->middle.y + t * stripe->along.y + down * stripe->along.x};
 }
 
-/* Samples the stripe and what lies around its ends. */
-void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, tmi_wave *wave, uint32_t *reads);
+/* Samples the stripe from -reach to reach around its middle, in steps of this or what there is room for; px. */
+void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, float reach, float step, tmi_wave *wave,
+                     uint32_t *reads);
 
 /* A first guess of where the row lies: its leftmost finder, one module, the CMs on from there. */
 typedef struct tmi_guess {
@@ -73,13 +75,20 @@ typedef struct tmi_guess {
 
 enum { TMI_GUESSES = 3 };
 
-/* Guesses, one for each range of modules, from where the strokes are. */
+/* Whether it rises and falls too little for a tape. */
+bool tmi_wave_is_flat(const tmi_wave *wave);
+
+/* Guesses, one for each range of modules, from a wave of about five pitches. */
 void tmi_wave_guess_rows(const tmi_wave *wave, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES], uint32_t *work);
+
+/* Fits such a guess to the same wave; false where it does not come to fit. */
+bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work);
 
 /* Fits such a guess, and follows the row to both ends. */
 bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work);
 
-/* Fits the stripe to the finder patterns of the row, across. */
+/* Fits the stripe to the finder patterns of the row, across: its place, direction and height. How the height changes
+ * along it is a matter of perspective, as is the row's bend, which is known better. */
 bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, tmi_stripe *stripe,
                          uint32_t *reads);
 

@@ -19,6 +19,10 @@ enum { PREPARE_WORK = 400, SCORE_WORK = 70 };
  * included, would gain less than this part of a one's energy. */
 static const float hopeless_gain = -0.9f;
 
+/* Under more blur than this, of both leaks together, what a one darkens is not told from what its neighbours do: the
+ * next best cells are candidates too, however little is to be seen there, so that no word wins for want of rivals. */
+static const float doubtful_blur = 0.36f, doubtful_gain = -1.31f;
+
 /* A one has to explain this part of its own energy to be taken for likely, when words are shortlisted. Without
  * it, words that add doubtful ones to the right word would crowd that off the list. */
 static const float one_cost = 0.35f;
@@ -30,7 +34,7 @@ static const float known_id_bonus = 0.03f;
  * one. The odds are then cut down to what is enough only where the next CM says the same id. */
 static bool is_too_blurred(const tmi_cells *cells)
 {
-    return cells->leak_along + cells->leak_across > 0.46f || real_max(cells->leak_along, cells->leak_across) > 0.28f;
+    return cells->leak_along + cells->leak_across > 0.5f || real_max(cells->leak_along, cells->leak_across) > 0.295f;
 }
 
 typedef struct candidate {
@@ -60,9 +64,10 @@ static float score_word(const tmi_evidence *e, const candidate *word)
 static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
+    const float least = e->leak_along + e->leak_across > doubtful_blur ? doubtful_gain : hopeless_gain;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
         const float energy = tmi_evidence_energy(e, i), gain = (2 * e->amounts[i] - 1 - one_cost) * energy;
-        if (gain < hopeless_gain * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
+        if (gain < least * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
             continue;
         int at = count < CANDIDATE_CELLS ? count++ : count - 1;
         for (; at > 0 && gains[at - 1] < gain; at--) {
