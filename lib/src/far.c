@@ -167,8 +167,10 @@ static const float near_px = 10.5f;
 static bool is_read(const tapemark_result *result, tmi_point at, float height)
 {
     for (size_t i = 0; i < result->cm_count; i++) {
+        if (!holds(result->cms[i].corners, at))
+            continue;
         const float cm_height = height_of(result->cms[i].corners);
-        if ((cm_height > near_px || cm_height > 1.5f * height) && holds(result->cms[i].corners, at))
+        if (cm_height > near_px || cm_height > 1.5f * height)
             return true;
     }
     for (size_t i = 0; i < result->tm_count; i++)

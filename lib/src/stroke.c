@@ -77,19 +77,19 @@ static void sort(tmi_strokes *strokes)
  * but a light CM: 25 modules, where the stroke has seven. Where the direction is known, one finder may be missing. */
 static bool may_follow(const tmi_stroke *at, const tmi_stroke *a, const tmi_stroke *b, float *error)
 {
-    const float dx = (float)(b->line - a->line), wa = tmi_stroke_width(a), wb = tmi_stroke_width(b),
-                w = 0.5f * (wa + wb);
-    if (dx > (a->count < 3 ? 4 : 7) * w + 4 || real_abs(wa - wb) > 0.2f * w + 0.6f || a->contrast > 3 * b->contrast ||
+    const int dx = b->line - a->line, widths = a->width + b->width, change = a->width - b->width; /* 1/8 px */
+    const int slack = widths / 10 + 5, reach = (a->count < 3 ? 4 : 7) * widths / 16 + 4;
+    if (dx > reach || change > slack || -change > slack || a->contrast > 3 * b->contrast ||
         b->contrast > 3 * a->contrast)
         return false;
-    const float dy = tmi_stroke_centre(b) - tmi_stroke_centre(a);
+    const float dy = tmi_stroke_centre(b) - tmi_stroke_centre(a), go = (float)dx;
     *error = 0.2f * real_abs(dy);
     if (a->count < 2)
-        return real_abs(dy) <= 1.15f * dx;
+        return real_abs(dy) <= 1.15f * go;
     const tmi_stroke *first = &at[a->first];
-    const float base = (float)(a->line - first->line), slack = 0.5f + 0.1f * w;
-    *error = real_abs(dy - (tmi_stroke_centre(a) - tmi_stroke_centre(first)) / base * dx);
-    return *error <= slack * (1 + dx / base);
+    const float base = (float)(a->line - first->line);
+    *error = real_abs(dy - (tmi_stroke_centre(a) - tmi_stroke_centre(first)) / base * go);
+    return *error <= (0.5f + 0.1f / 16 * (float)widths) * (1 + go / base);
 }
 
 void tmi_strokes_chain(tmi_strokes *strokes)
