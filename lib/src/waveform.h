@@ -3,21 +3,12 @@
 #ifndef TAPEMARK_WAVEFORM_H
 #define TAPEMARK_WAVEFORM_H
 
+#include "row_print.h"
 #include "stroke.h"
 
 #include "tapemark.h"
 
 enum { TMI_WAVE_SAMPLES = 1024 };
-
-/* What the parts of a row look like: shares of dark, blurred, in tables of four entries a module. */
-#define TMI_BLUR_MAX 4
-#define TMI_PRINT_STEPS 4
-#define TMI_PRINT_ENTRIES(columns) (((columns)-1 + 2 * TMI_BLUR_MAX) * TMI_PRINT_STEPS + 1)
-typedef struct tmi_prints {
-    float reach; /* modules over which they are blurred; 0: not yet filled in */
-    float finder[TMI_PRINT_ENTRIES(7)], bars[TMI_PRINT_ENTRIES(7)];
-    float light[TMI_PRINT_ENTRIES(TAPEMARK_CELL_COLUMNS)], dark[TMI_PRINT_ENTRIES(TAPEMARK_CELL_COLUMNS)];
-} tmi_prints;
 
 /* Means over the tape's height, along the stripe. */
 typedef struct tmi_wave {
@@ -51,6 +42,17 @@ typedef struct tmi_row {
 static inline float tmi_row_px(const tmi_row *row, float u)
 {
     return row->origin + row->module * u / (1 + row->bend * u);
+}
+
+/* Where its ink begins and ends, bars left out, in modules. */
+static inline float tmi_row_left(const tmi_row *row)
+{
+    return (float)(TAPEMARK_CM_PITCH_MODULES * row->first) - 3.5f;
+}
+
+static inline float tmi_row_right(const tmi_row *row)
+{
+    return (float)(TAPEMARK_CM_PITCH_MODULES * (row->first + row->cm_count)) + 3.5f;
 }
 
 /* The image point v modules across from the row's middle line. */

@@ -63,7 +63,7 @@ static tally read_sweep(const sweep *s, int count)
         random_source source = {(uint64_t)(i + 1)};
         int32_t ids[TAPEMARK_TM_MAX_CMS];
         random_ids(&source, s->cm_count, ids);
-        scene view = scene_default(480, 270);
+        scene view = scene_default(340, 240);
         view.seed = (uint64_t)(i + 1);
         view.background = (scene_background){.kind = s->background, .light = s->light, .dark = 60, .scale_px = 40,
                                              .room = {3, 1}};
