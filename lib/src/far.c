@@ -8,11 +8,18 @@ enum { PITCH = TAPEMARK_CM_PITCH_MODULES };
 /* A row has to explain this share of the waveform. */
 static const float explained_min = 0.85f;
 
+/* A TM this share: with a piece of wall beyond its end taken for one more CM, it explains up to 0.9; whole, from 0.95
+ * on. */
+static const float tm_explained_min = 0.92f;
+
 /* Bars have to fit by this much; 1 is perfect. A light CM does by 0.1. */
 static const float bars_min = 0.25f;
 
 /* From this size on rings can be seen; below, a row has to explain more. */
 static const float rings_px = 0.66f, unresolved_min = 0.93f;
+
+/* Below this, px a module, finder patterns pass for bars and bars for finder patterns. */
+static const float blocks_px = 0.55f;
 
 /* Modules that words need to be told from each other, whatever they show, px. */
 static const float words_px = 0.85f;
@@ -127,9 +134,10 @@ static bool is_tape(const tmi_reader *reader, const tmi_far *far, const tmi_row 
 static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
 {
     const float least_px = real_min(row->module, far->wave.stripe.height * (1.0f / TAPEMARK_HEIGHT_MODULES));
-    if (!is_tape(reader, far, row, least_px))
+    if (least_px < blocks_px || !is_tape(reader, far, row, least_px))
         return;
-    const bool has_bars = row->cm_count >= TAPEMARK_TM_MIN_CMS && row->bars[0] > bars_min && row->bars[1] > bars_min;
+    const bool has_bars = row->explained > tm_explained_min && row->cm_count >= TAPEMARK_TM_MIN_CMS &&
+                          row->bars[0] > bars_min && row->bars[1] > bars_min;
     tmi_tm_reading tm;
     if (has_bars)
         read_lines(reader, far, row, &tm);

@@ -159,14 +159,30 @@ static float slot_misfit(const tmi_wave *wave, const tmi_row *row, int k, bool r
     return right ? misfit(wave, row, &print, u + 4, u + 28.5f) : misfit(wave, row, &print, u - 3.5f, u + 21);
 }
 
+/* Paper or a wall beyond the tape's end fits a light block well, but not the finder at its far end. */
+static const float finder_misfit_max = 0.28f;
+
+static float end_finder_misfit(const tmi_wave *wave, const tmi_row *row, bool right)
+{
+    const tmi_row_print print = print_of(wave, row);
+    const float u = right ? tmi_row_right(row) - 3.5f : tmi_row_left(row) + 3.5f;
+    return misfit(wave, row, &print, u - 3.5f, u + 3.5f);
+}
+
+static bool fits_at_end(const tmi_wave *wave, const tmi_row *row, bool right)
+{
+    return slot_misfit(wave, row, right ? row->cm_count - 1 : 0, right) <= slot_misfit_max &&
+           end_finder_misfit(wave, row, right) <= finder_misfit_max;
+}
+
 /* Leaves out CMs at the ends that do not fit. */
 static void trim(const tmi_wave *wave, tmi_row *row)
 {
-    while (row->cm_count > 0 && slot_misfit(wave, row, row->cm_count - 1, true) > slot_misfit_max) {
+    while (row->cm_count > 0 && !fits_at_end(wave, row, true)) {
         row->cm_count--;
         row->dark &= (1u << row->cm_count) - 1;
     }
-    while (row->cm_count > 0 && slot_misfit(wave, row, 0, false) > slot_misfit_max) {
+    while (row->cm_count > 0 && !fits_at_end(wave, row, false)) {
         row->cm_count--;
         row->first++;
         row->dark >>= 1;
@@ -201,7 +217,7 @@ static bool extend(const tmi_wave *wave, tmi_row *row, bool right, float misfit_
         return false;
     find_code(wave, &longer);
     if (slot_misfit(wave, &longer, right ? longer.cm_count - 1 : 0, right) > misfit_max ||
-        !fit_row(wave, &longer, 2, work))
+        end_finder_misfit(wave, &longer, right) > finder_misfit_max || !fit_row(wave, &longer, 2, work))
         return false;
     *row = longer;
     return true;

