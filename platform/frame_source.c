@@ -42,7 +42,7 @@ static frame_source *refuse(byte_reader *reader, size_t size, error_text *error)
         if (size == 0)
             error_text_set(error, "is empty");
         else
-            error_text_set(error, "is no picture or video in a known format (headerless captures need --raw)");
+            error_text_set(error, "is no picture or video in a known format (headerless captures need a layout)");
     }
     byte_reader_close(reader);
     return NULL;

@@ -1,14 +1,9 @@
 /*
- * The map of a tape: which code marker (CM) hangs where on the floor plan, and which tape marker (TM) it is part
- * of. Reads the format of the marker's inventors: a JSON array with one object a CM and the keys
+ * The map of a tape: which code marker (CM) hangs where on the floor plan, and which tape marker (TM) it is part of.
  *
- *     idcm_decimal   the id, a whole number
- *     x, y           its position on the plan, in metres
- *     idtm           the code of its TM, '0' and '1', or blank for a CM that stands alone
- *     n_tm           the running number of its TM, or blank
- *     idcm, checksum the 78 bits of its code word and the 8 of its checksum; may be left out
- *
- * Other keys are let pass.
+ * The plan is seen from above: x to the right, y down, in metres, as pictures have it. Directions are those in which
+ * a tape reads, from the left end of its ink to the right end; a tape on a wall faces the side to the right of that
+ * direction as the plan shows it.
  */
 #ifndef PLATFORM_MAP_FILE_H
 #define PLATFORM_MAP_FILE_H
@@ -19,40 +14,56 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { MAP_CODE_MAX = 64, MAP_NO_TM = -1 };
+enum { MAP_CODE_MAX = 64 };
+
+typedef struct map_point {
+    double x_m, y_m;
+} map_point;
+
+typedef enum map_mount { MAP_MOUNT_UNKNOWN, MAP_ON_WALL, MAP_ON_FLOOR } map_mount;
 
 typedef struct map_cm {
     int32_t id;
-    int32_t tm;  /* index in the map's tms, or MAP_NO_TM */
-    double x_m;
-    double y_m;
+    map_point centre;
+    map_point start, end;  /* of the ink; both at the centre where the map does not tell */
 } map_cm;
 
-typedef struct map_tm {
-    char code[MAP_CODE_MAX + 1];
-    bool complete;  /* all its CMs are on the map */
-    double x_m;     /* mean of its CMs */
-    double y_m;
-} map_tm;
+/* A TM, or a CM that stands alone. */
+typedef struct map_segment {
+    char code[MAP_CODE_MAX + 1];  /* '1' for a light CM, '0' for a dark one; empty for a CM that stands alone */
+    size_t first_cm;              /* its CMs stand in the map one after another, as it reads */
+    size_t cm_count;
+    bool complete;                /* all CMs of the code are on the map */
+    map_point start, end;         /* of the ink, bars included; both at the centre where the map does not tell */
+    map_mount mount;
+    double above_floor_m;         /* of its middle; 0 where unknown */
+} map_segment;
 
 typedef struct tape_map {
-    map_cm *cms;  /* in ascending order of ids, without repetition */
+    double width_m, height_m;  /* of the plan; 0 where unknown */
+    double module_mm;          /* 0 where unknown */
+    map_cm *cms;               /* segment by segment */
     size_t cm_count;
-    map_tm *tms;
-    size_t tm_count;
+    map_segment *segments;
+    size_t segment_count;
 } tape_map;
 
 /* Whether there is such an id, and its code word and checksum, as characters '0' and '1', are these; either may
  * be NULL. */
 typedef bool (*map_id_check)(int32_t id, const char *word, const char *checksum);
 
-/* Reads and checks a whole map; false, with the place in the file, when it is malformed or contradicts itself.
- * The caller releases the map. */
+/* The code word of an id, 78 characters '0' and '1', and its checksum, 8 of them; both end with a NUL. */
+typedef void (*map_id_bits)(int32_t id, char word[79], char checksum[9]);
+
+/* Reads and checks a whole map, ours or the inventors'; which, its content tells. False, with the place in the file,
+ * when it is malformed or contradicts itself. The caller releases the map. */
 bool map_file_read(const char *path, map_id_check check_id, tape_map *map, error_text *error);
 
-void tape_map_release(tape_map *map);
+/* Writes a map in our format, or in that of the marker's inventors. False, with nothing left behind, when the file
+ * cannot be written. */
+bool map_file_write(const char *path, const tape_map *map, error_text *error);
+bool map_file_write_paper(const char *path, const tape_map *map, map_id_bits bits_of, error_text *error);
 
-/* NULL for an id that is not on the map. */
-const map_cm *tape_map_find_cm(const tape_map *map, int32_t id);
+void tape_map_release(tape_map *map);
 
 #endif

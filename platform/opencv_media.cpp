@@ -15,6 +15,7 @@
 #include <fcntl.h>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -202,6 +203,28 @@ extern "C" bool opencv_decode_still(const uint8_t *bytes, size_t size, gray_pict
         return false;
     }
     return has_valid_size(gray, error) && copy_picture(gray, picture, error);
+}
+
+extern "C" bool opencv_encode_png(const uint8_t *pixels, int32_t width_px, int32_t height_px, uint8_t **bytes,
+                                  size_t *size, error_text *error)
+{
+    std::vector<uint8_t> encoded;
+    try {
+        quiet_stderr quiet;
+        const cv::Mat picture(height_px, width_px, CV_8UC1, const_cast<uint8_t *>(pixels));
+        if (!cv::imencode(".png", picture, encoded))
+            encoded.clear();
+    } catch (const std::exception &) {
+        encoded.clear();
+    }
+    *size = encoded.size();
+    *bytes = encoded.empty() ? nullptr : static_cast<uint8_t *>(std::malloc(encoded.size()));
+    if (*bytes == nullptr) {
+        error_text_set(error, "not enough memory for a PNG of %d x %d px", width_px, height_px);
+        return false;
+    }
+    std::memcpy(*bytes, encoded.data(), encoded.size());
+    return true;
 }
 
 extern "C" frame_source *opencv_video_open(const char *path, error_text *error)

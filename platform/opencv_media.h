@@ -1,5 +1,5 @@
 /*
- * What OpenCV does for us, behind a C interface: still pictures and videos to gray, gray or colour to PNG.
+ * What OpenCV does for us, behind a C interface: still pictures and videos to gray, gray to PNG.
  * OpenCV and the libraries below it print their complaints themselves; while they work, standard error is
  * pointed at /dev/null, so that users get one line, ours.
  */
@@ -20,6 +20,10 @@ typedef struct gray_picture {
 
 /* A whole still picture in memory. Transparent parts show white, orientation tags are followed. */
 bool opencv_decode_still(const uint8_t *bytes, size_t size, gray_picture *picture, error_text *error);
+
+/* A gray picture, rows without gaps, as PNG. The caller frees the bytes. */
+bool opencv_encode_png(const uint8_t *pixels, int32_t width_px, int32_t height_px, uint8_t **bytes, size_t *size,
+                       error_text *error);
 
 /* A video file, read through FFmpeg. Rotation tags are followed. NULL on failure. */
 frame_source *opencv_video_open(const char *path, error_text *error);

@@ -3,19 +3,17 @@
 #include "frame_source.h"
 #include "gray.h"
 #include "input_list.h"
+#include "map_table.h"
 #include "options.h"
-#include "places.h"
+#include "process.h"
 #include "progress.h"
 #include "report.h"
 #include "summary.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #define PROGRAM "tapemark-decode"
 
@@ -26,8 +24,8 @@ enum { CM_CAPACITY = 2048, TM_CAPACITY = 512, FINDER_CAPACITY = 8192 };
 
 typedef struct decode_run {
     decode_options options;
-    places known;
-    const places *map;  /* &known, or NULL without a map */
+    map_table known;
+    const tapemark_map *map;  /* of the table, or NULL without a map */
     input_list inputs;
     gray_converter converter;
     uint8_t *workspace;
@@ -231,12 +229,12 @@ static bool prepare_run(decode_run *run)
         return false;
     }
     if (options->map_path != NULL) {
-        if (!places_load(options->map_path, &run->known, &error)) {
+        if (!map_table_load(options->map_path, &run->known, &error)) {
             print_error(options->map_path, error.text);
             return false;
         }
-        run->map = &run->known;
-        places_configure(&run->known, &run->options.config);
+        run->map = &run->known.map;
+        map_table_configure(&run->known, &run->options.config);
     }
     if (options->annotate_path != NULL && !annotate_prepare(options->annotate_path, &error)) {
         print_error(options->annotate_path, error.text);
@@ -268,7 +266,7 @@ static int run_all(decode_run *run)
 
 static void release_run(decode_run *run)
 {
-    places_release(&run->known);
+    map_table_release(&run->known);
     input_list_release(&run->inputs);
     gray_converter_release(&run->converter);
     text_buffer_release(&run->line);
@@ -279,22 +277,11 @@ static void release_run(decode_run *run)
     free(run->result.finders);
 }
 
-/* A file opened later must not end up where standard output or standard error should be. */
-static bool fill_descriptors(void)
-{
-    bool output_open = fcntl(STDOUT_FILENO, F_GETFD) >= 0;
-    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; descriptor++)
-        if (fcntl(descriptor, F_GETFD) < 0 && open("/dev/null", O_RDWR) != descriptor)
-            return false;
-    return output_open;
-}
-
 int main(int argc, char *argv[])
 {
     decode_run run = {0};
     error_text error;
-    signal(SIGPIPE, SIG_IGN);
-    if (!fill_descriptors()) {
+    if (!process_prepare()) {
         print_error("standard output", "is closed");
         return EXIT_BAD_INPUT;
     }

@@ -1,9 +1,8 @@
 #include "options.h"
 
-#include <errno.h>
+#include "option_values.h"
+
 #include <getopt.h>
-#include <stdlib.h>
-#include <string.h>
 
 const char options_help[] =
     "usage: tapemark-decode [OPTION...] INPUT...\n"
@@ -18,7 +17,8 @@ const char options_help[] =
     "                       stride of the first plane in bytes. FORMAT is GREY, Y10, Y12, Y16, Y10P, YUYV, UYVY,\n"
     "                       NV12, YU12 or Bayer, SRGGB8, SRGGB10, SRGGB10P (also SGRBG.., SGBRG.., SBGGR..). In a\n"
     "                       directory, names that end in .raw, .bin, .yuv or the format are read so\n"
-    "  --map FILE           the map of the tape: adds x and y in metres, reads only ids that are on it\n"
+    "  --map FILE           the map of the tape: reads only ids that are on it, adds each marker's place on the\n"
+    "                       plan in metres and its direction, says whether tape and code markers agree\n"
     "  --annotate DIR       writes each frame as PNG into DIR, with what was seen drawn in: finder patterns in\n"
     "                       blue, code markers in green with their ids, tape markers in orange with their codes\n"
     "\n"
@@ -37,53 +37,38 @@ const char options_help[] =
     "Exit status: 0 all frames of all inputs were decoded (with markers in them or not); 1 an input or the map\n"
     "could not be read wholly, or output could not be written; 2 wrong usage.\n";
 
-static bool parse_real(const char *name, const char *text, double least, double most, float *value,
-                       error_text *error)
+static bool parse_real(const char *text, double least, double most, float *value, error_text *error)
 {
-    char *end;
-    double number = strtod(text, &end);
-    if (end == text || *end != '\0' || !(number >= least && number <= most)) {
-        error_text_set(error, "--%s needs a number from %g to %g, not '%.40s'", name, least, most, text);
+    double number;
+    if (!parse_value(text, (value_range){VALUE_NUMBER, least, most}, &number, error))
         return false;
-    }
     *value = (float)number;
     return true;
 }
 
-static bool parse_whole(const char *name, const char *text, unsigned long most, unsigned long *value,
-                        error_text *error)
+static bool parse_whole(const char *text, uint32_t most, uint32_t *value, error_text *error)
 {
-    char *end;
-    errno = 0;
-    *value = strtoul(text, &end, 10);
-    if (*text < '0' || *text > '9' || *end != '\0' || errno != 0 || *value < 1 || *value > most) {
-        error_text_set(error, "--%s needs a whole number from 1 to %lu, not '%.40s'", name, most, text);
+    double number;
+    if (!parse_value(text, (value_range){VALUE_WHOLE, 1, most}, &number, error))
         return false;
-    }
+    *value = (uint32_t)number;
     return true;
 }
 
 static bool parse_format(const char *text, report_format *format, error_text *error)
 {
     static const char *const names[] = {[REPORT_JSONL] = "jsonl", [REPORT_CSV] = "csv", [REPORT_TEXT] = "text"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        if (strcmp(text, names[i]) == 0) {
-            *format = (report_format)i;
-            return true;
-        }
-    }
-    error_text_set(error, "--format is jsonl, csv or text, not '%.40s'", text);
-    return false;
+    size_t choice;
+    if (!parse_choice(text, names, sizeof names / sizeof *names, &choice, error))
+        return false;
+    *format = (report_format)choice;
+    return true;
 }
 
 static bool parse_raw(const char *text, decode_options *options, error_text *error)
 {
-    error_text reason;
     options->raw_given = true;
-    if (frame_layout_parse(text, &options->raw, &reason))
-        return true;
-    error_text_set(error, "--raw: %s", reason.text);
-    return false;
+    return frame_layout_parse(text, &options->raw, error);
 }
 
 enum option_code {
@@ -120,32 +105,37 @@ static const struct option long_options[] = {
 /* The settings of the decoder. */
 static bool apply_setting(int code, const char *argument, tapemark_config *config, error_text *error)
 {
-    unsigned long number;
+    uint32_t number;
     switch (code) {
     case OPTION_ROLL:
         config->roll_known = true;
-        return parse_real("roll", argument, -360, 360, &config->roll_deg, error);
+        return parse_real(argument, -360, 360, &config->roll_deg, error);
     case OPTION_INVERTED:
         config->polarity = TAPEMARK_LIGHT_ON_DARK;
         return true;
     case OPTION_VOTE_MIN:
-        return parse_real("vote-min", argument, 0.501, 1, &config->vote_min, error);
+        return parse_real(argument, 0.501, 1, &config->vote_min, error);
     case OPTION_CONFIDENCE_MIN:
-        return parse_real("confidence-min", argument, 0, 1, &config->confidence_min, error);
+        return parse_real(argument, 0, 1, &config->confidence_min, error);
     case OPTION_MAX_ID:
-        if (!parse_whole("max-id", argument, TAPEMARK_MAX_ID, &number, error))
+        if (!parse_whole(argument, TAPEMARK_MAX_ID, &number, error))
             return false;
         config->id_max = (int32_t)number;
         return true;
     default:
-        if (!parse_whole("budget", argument, UINT32_MAX, &number, error))
-            return false;
-        config->work_budget = (uint32_t)number;
-        return true;
+        return parse_whole(argument, UINT32_MAX, &config->work_budget, error);
     }
 }
 
-static bool apply_option(int code, char *argument, decode_options *options, error_text *error)
+static const char *option_name(int code)
+{
+    const struct option *option = long_options;
+    while (option->val != code)
+        option++;
+    return option->name;
+}
+
+static bool take_option(int code, char *argument, decode_options *options, error_text *error)
 {
     switch (code) {
     case OPTION_MAP:
@@ -161,6 +151,15 @@ static bool apply_option(int code, char *argument, decode_options *options, erro
     default:
         return apply_setting(code, argument, &options->config, error);
     }
+}
+
+static bool apply_option(int code, char *argument, decode_options *options, error_text *error)
+{
+    error_text reason;
+    if (take_option(code, argument, options, &reason))
+        return true;
+    error_text_set(error, "--%s: %s", option_name(code), reason.text);
+    return false;
 }
 
 options_answer options_parse(int argc, char *argv[], decode_options *options, error_text *error)

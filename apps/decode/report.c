@@ -1,8 +1,10 @@
 #include "report.h"
 
 #include "frame.h"
+#include "marker_place.h"
 
 #include <stdio.h>
+#include <string.h>
 
 /* ---- Shared -------------------------------------------------------------------------------------------- */
 
@@ -43,7 +45,7 @@ static tapemark_point centre(const tapemark_point corners[4])
 
 /* ---- JSON Lines ---------------------------------------------------------------------------------------- */
 
-enum { PIXEL_DECIMALS = 2, SHARE_DECIMALS = 3, METRE_DECIMALS = 4, SECOND_DECIMALS = 6 };
+enum { PIXEL_DECIMALS = 2, SHARE_DECIMALS = 3, METRE_DECIMALS = 4, DEGREE_DECIMALS = 2, SECOND_DECIMALS = 6 };
 
 static void add_json_corners(text_buffer *buffer, const tapemark_point corners[4])
 {
@@ -64,24 +66,38 @@ static void add_json_member(text_buffer *buffer, const char *key, double number,
     text_buffer_add_json_number(buffer, number, decimals);
 }
 
-static void add_json_place(text_buffer *buffer, bool found, plan_point point)
+static void add_json_place(text_buffer *buffer, marker_place place)
 {
-    if (!found)
+    if (!place.placed)
         return;
-    add_json_member(buffer, "x", point.x_m, METRE_DECIMALS);
-    add_json_member(buffer, "y", point.y_m, METRE_DECIMALS);
+    add_json_member(buffer, "x", place.x_m, METRE_DECIMALS);
+    add_json_member(buffer, "y", place.y_m, METRE_DECIMALS);
+    if (place.directed)
+        add_json_member(buffer, "direction_deg", place.direction_deg, DEGREE_DECIMALS);
+}
+
+static void add_json_tm_place(text_buffer *buffer, const frame_report *report, size_t index)
+{
+    tapemark_tm_place located;
+    if (report->map == NULL)
+        return;
+    add_json_place(buffer, marker_place_of_tm(report->map, report->result, index, &located));
+    text_buffer_add(buffer, ",\"agrees\":%s", agreement_answer(located.agreement));
+    if (located.agreement != TAPEMARK_AGREES)
+        text_buffer_add(buffer, ",\"reason\":\"%s\"", agreement_name(located.agreement));
+    if (located.backwards)
+        text_buffer_add(buffer, ",\"read_backwards\":true");
 }
 
 static void add_json_cm(text_buffer *buffer, const frame_report *report, const tapemark_cm *cm)
 {
-    plan_point point = {0, 0};
     text_buffer_add(buffer, "{\"type\":\"cm\",\"id\":%d", cm->id);
     add_json_corners(buffer, cm->corners);
     add_json_member(buffer, "confidence", (double)cm->confidence, SHARE_DECIMALS);
     text_buffer_add(buffer, ",\"doubtful\":%d,\"corrected\":%d", cm->doubtful_cells, cm->corrected_cells);
     if (cm->tm >= 0)
         text_buffer_add(buffer, ",\"tm\":%d,\"slot\":%d", cm->tm, cm->slot);
-    add_json_place(buffer, places_find_cm(report->known, cm->id, &point), point);
+    add_json_place(buffer, marker_place_of_cm(report->map, cm->id));
     text_buffer_add(buffer, "}");
 }
 
@@ -90,7 +106,6 @@ static void add_json_tm(text_buffer *buffer, const frame_report *report, size_t 
     const tapemark_tm *tm = &report->result->tms[index];
     size_t cms[TAPEMARK_TM_MAX_CMS];
     size_t count = report_list_cms(report->result, index, cms);
-    plan_point point = {0, 0};
 
     text_buffer_add(buffer, "{\"type\":\"tm\",\"code\":\"%s\",\"directed\":%s", tm->code,
                     tm->directed ? "true" : "false");
@@ -101,7 +116,7 @@ static void add_json_tm(text_buffer *buffer, const frame_report *report, size_t 
         text_buffer_add(buffer, i > 0 ? ",%d" : "%d", report->result->cms[cms[i]].id);
     text_buffer_add(buffer, "]");
     add_json_member(buffer, "vote", (double)tm->vote, SHARE_DECIMALS);
-    add_json_place(buffer, places_find_tm(report->known, report->result, index, &point), point);
+    add_json_tm_place(buffer, report, index);
     text_buffer_add(buffer, "}");
 }
 
@@ -149,7 +164,7 @@ void report_add_json(text_buffer *buffer, const frame_report *report)
 void report_add_csv_header(text_buffer *buffer)
 {
     text_buffer_add(buffer, "source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,"
-                            "confidence,cms,x,y\n");
+                            "confidence,cms,x,y,direction_deg,agrees,reason\n");
 }
 
 static void add_csv_start(text_buffer *buffer, const frame_report *report)
@@ -167,12 +182,29 @@ static void add_csv_numbers(text_buffer *buffer, const tapemark_point corners[4]
     text_buffer_add(buffer, ",%.*f,", SHARE_DECIMALS, (double)confidence);
 }
 
-static void add_csv_place(text_buffer *buffer, bool found, plan_point point)
+static void add_csv_place(text_buffer *buffer, marker_place place)
 {
-    if (found)
-        text_buffer_add(buffer, ",%.*f,%.*f\n", METRE_DECIMALS, point.x_m, METRE_DECIMALS, point.y_m);
+    if (place.placed)
+        text_buffer_add(buffer, ",%.*f,%.*f,", METRE_DECIMALS, place.x_m, METRE_DECIMALS, place.y_m);
     else
-        text_buffer_add(buffer, ",,\n");
+        text_buffer_add(buffer, ",,,");
+    if (place.directed)
+        text_buffer_add(buffer, "%.*f", DEGREE_DECIMALS, place.direction_deg);
+}
+
+/* In CSV, an empty field is null. */
+static void add_csv_tm_place(text_buffer *buffer, const frame_report *report, size_t index)
+{
+    tapemark_tm_place located;
+    if (report->map == NULL) {
+        text_buffer_add(buffer, ",,,,,\n");
+        return;
+    }
+    add_csv_place(buffer, marker_place_of_tm(report->map, report->result, index, &located));
+    const char *answer = agreement_answer(located.agreement);
+    bool agrees = located.agreement == TAPEMARK_AGREES;
+    text_buffer_add(buffer, ",%s,%s\n", strcmp(answer, "null") == 0 ? "" : answer,
+                    agrees ? "" : agreement_name(located.agreement));
 }
 
 /* The ids of a TM's CMs, with blanks between them and `before` in front where there are any. */
@@ -187,13 +219,13 @@ static void add_cm_ids(text_buffer *buffer, const char *before, const tapemark_r
 void report_add_csv(text_buffer *buffer, const frame_report *report)
 {
     const tapemark_result *result = report->result;
-    plan_point point = {0, 0};
     for (size_t i = 0; i < result->cm_count; i++) {
         const tapemark_cm *cm = &result->cms[i];
         add_csv_start(buffer, report);
         text_buffer_add(buffer, ",cm,%d,,", cm->id);
         add_csv_numbers(buffer, cm->corners, cm->confidence);
-        add_csv_place(buffer, places_find_cm(report->known, cm->id, &point), point);
+        add_csv_place(buffer, marker_place_of_cm(report->map, cm->id));
+        text_buffer_add(buffer, ",,\n");
     }
     for (size_t i = 0; i < result->tm_count; i++) {
         const tapemark_tm *tm = &result->tms[i];
@@ -201,7 +233,7 @@ void report_add_csv(text_buffer *buffer, const frame_report *report)
         text_buffer_add(buffer, ",tm,,%s,%d", tm->code, tm->directed);
         add_csv_numbers(buffer, tm->corners, tm->confidence);
         add_cm_ids(buffer, "", result, i);
-        add_csv_place(buffer, places_find_tm(report->known, result, i, &point), point);
+        add_csv_tm_place(buffer, report, i);
     }
 }
 
@@ -216,29 +248,40 @@ static void add_text_line(text_buffer *buffer, const frame_report *report, const
                     (double)confidence);
 }
 
-static void add_text_place(text_buffer *buffer, bool found, plan_point point)
+static void add_text_place(text_buffer *buffer, marker_place place)
 {
-    if (found)
-        text_buffer_add(buffer, ", on the plan at (%.2f m, %.2f m)", point.x_m, point.y_m);
-    text_buffer_add(buffer, "\n");
+    if (place.placed)
+        text_buffer_add(buffer, ", on the plan at (%.2f m, %.2f m)", place.x_m, place.y_m);
+    if (place.directed)
+        text_buffer_add(buffer, " reading towards %.0f deg", place.direction_deg);
+}
+
+static void add_text_tm_place(text_buffer *buffer, const frame_report *report, size_t index)
+{
+    tapemark_tm_place located;
+    if (report->map == NULL)
+        return;
+    add_text_place(buffer, marker_place_of_tm(report->map, report->result, index, &located));
+    text_buffer_add(buffer, "%s%s", located.tm >= 0 ? ", " : ", no place: ", agreement_phrase(located.agreement));
 }
 
 void report_add_text(text_buffer *buffer, const frame_report *report)
 {
     const tapemark_result *result = report->result;
     char what[TAPEMARK_TM_MAX_CMS + 40];
-    plan_point point = {0, 0};
     for (size_t i = 0; i < result->cm_count; i++) {
         const tapemark_cm *cm = &result->cms[i];
         snprintf(what, sizeof what, "CM %d", cm->id);
         add_text_line(buffer, report, what, cm->corners, cm->confidence);
-        add_text_place(buffer, places_find_cm(report->known, cm->id, &point), point);
+        add_text_place(buffer, marker_place_of_cm(report->map, cm->id));
+        text_buffer_add(buffer, "\n");
     }
     for (size_t i = 0; i < result->tm_count; i++) {
         const tapemark_tm *tm = &result->tms[i];
         snprintf(what, sizeof what, "TM %s%s", tm->code, tm->directed ? "" : " (or backwards)");
         add_text_line(buffer, report, what, tm->corners, tm->confidence);
         add_cm_ids(buffer, ", CMs ", result, i);
-        add_text_place(buffer, places_find_tm(report->known, result, i, &point), point);
+        add_text_tm_place(buffer, report, i);
+        text_buffer_add(buffer, "\n");
     }
 }

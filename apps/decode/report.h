@@ -2,7 +2,6 @@
 #ifndef DECODE_REPORT_H
 #define DECODE_REPORT_H
 
-#include "places.h"
 #include "tapemark.h"
 #include "text_buffer.h"
 
@@ -16,7 +15,7 @@ typedef struct frame_report {
     int64_t time_ns;  /* FRAME_TIME_UNKNOWN: the source does not tell */
     uint32_t decode_us;
     const tapemark_result *result;
-    const places *known;  /* NULL without a map */
+    const tapemark_map *map;  /* NULL without a map */
 } frame_report;
 
 /* One line, however many markers:
@@ -25,14 +24,22 @@ typedef struct frame_report {
  *      "limits":["scan"]}
  *
  * with first the CMs, {"type":"cm","id":-20,"corners":[[x,y] four times],"confidence":0.98,"doubtful":3,
- * "corrected":0,"tm":0,"slot":2,"x":1.25,"y":2}, then the TMs, {"type":"tm","code":"000101","directed":true,
- * "corners":…,"confidence":0.9,"cms":[-48,-49],"vote":1,"x":…,"y":…}. "tm" is an index among the TMs of the line;
- * "cms" are the ids read in a TM, in the order of their slots. "tm" and "slot", "x" and "y" in metres on the plan,
- * "time_s" and "limits" are there only where they apply. Keys may be added at the ends, never renamed: scripts
- * depend on them. */
+ * "corrected":0,"tm":0,"slot":2,"x":1.25,"y":2,"direction_deg":90}, then the TMs, {"type":"tm","code":"000101",
+ * "directed":true,"corners":…,"confidence":0.9,"cms":[-48,-49],"vote":1,"x":…,"y":…,"direction_deg":…,
+ * "agrees":true}. "tm" is an index among the TMs of the line; "cms" are the ids read in a TM, in the order of their slots.
+ *
+ * With a map: "x" and "y" are the marker's middle on the plan in metres, "direction_deg" the direction in which it
+ * reads there, clockwise from the x axis; they are there only where the map tells. "agrees" says whether a TM and the
+ * CMs read in it are the same as on the map: true, false, or null where there is nothing to compare. If not true,
+ * "reason" is one of the words of agreement_name() in marker_place.h. A TM that contradicts the map has no place.
+ * "read_backwards":true is there when it was read undirected and its corners run against "direction_deg".
+ *
+ * "tm", "slot", "time_s" and "limits" are there only where they apply. Keys may be added at the ends, never renamed:
+ * scripts depend on them. */
 void report_add_json(text_buffer *buffer, const frame_report *report);
 
-/* One row a marker; none for a frame without. */
+/* One row a marker; none for a frame without. Fields are named as in JSON; those that do not apply, and null, are
+ * empty. */
 void report_add_csv_header(text_buffer *buffer);
 void report_add_csv(text_buffer *buffer, const frame_report *report);
 

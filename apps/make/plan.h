@@ -21,6 +21,16 @@ typedef struct plan_point {
 
 typedef enum plan_mount { PLAN_ON_WALL, PLAN_ON_FLOOR } plan_mount;
 
+enum {
+    PLAN_TM_CMS = 6,           /* CMs of a TM where nothing else is said */
+    PLAN_CM_MODULES = 34,      /* a CM that stands alone, with its quiet zone */
+    PLAN_SIDE_MAX_M = 2500,    /* of the room */
+    PLAN_LINES_MAX = 100000
+};
+#define PLAN_SIDE_MIN_M 0.1
+#define PLAN_MODULE_MIN_MM 0.1
+#define PLAN_MODULE_MAX_MM 150.0
+
 typedef struct plan_line {
     plan_point from, to;
     plan_mount mount;
@@ -38,11 +48,20 @@ typedef struct plan {
     char *background_path;     /* a picture of the floor, for the preview; or NULL */
     plan_line *lines;
     size_t line_count;
+    uint32_t cms_wanted;       /* not more than so many CMs; 0: as many as the lines hold */
 } plan;
 
 /* Reads and checks a plan file. False when it is wrong, with the place in it. The caller releases the plan. */
 bool plan_read(const char *path, plan *wanted, error_text *error);
 
 void plan_release(plan *wanted);
+
+double plan_line_length_m(const plan_line *line);
+
+/* Whole modules along a line. One that is short by a micrometre is as good as whole. */
+uint32_t plan_line_modules(const plan *wanted, const plan_line *line);
+
+/* False when a line is too short for one CM with its quiet zone, with what it would take. */
+bool plan_line_holds_cm(const plan *wanted, const plan_line *line, error_text *error);
 
 #endif

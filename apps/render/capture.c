@@ -1,10 +1,14 @@
 #include "capture.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
+
+#include "opencv_media.h"
 
 static const capture_format formats[] = {
     {.name = "PGM", .container = CAPTURE_PGM},
+    {.name = "PNG", .container = CAPTURE_PNG},
     {.name = "Y4M", .container = CAPTURE_Y4M},
     {.name = "GREY"},
     {.name = "Y10", .packing = CAPTURE_16LE},
@@ -39,7 +43,7 @@ const capture_format *capture_format_find(const char *name)
 
 const char *capture_format_names(void)
 {
-    return "PGM Y4M GREY Y10 Y10P YUYV UYVY NV12 YU12 SRGGB8 SRGGB10 SRGGB10P ";
+    return "PGM PNG Y4M GREY Y10 Y10P YUYV UYVY NV12 YU12 SRGGB8 SRGGB10 SRGGB10P";
 }
 
 unsigned capture_bits(const capture_format *format)
@@ -63,10 +67,13 @@ bool capture_fits(const capture_format *format, int32_t width_px, int32_t height
     return (!grouped || width_px % columns == 0) && (!square || (width_px % 2 == 0 && height_px % 2 == 0));
 }
 
-void capture_write_header(FILE *file, const capture_format *format, int32_t width_px, int32_t height_px)
+void capture_write_header(FILE *file, const capture_format *format, int32_t width_px, int32_t height_px, double fps)
 {
-    if (format->container == CAPTURE_Y4M)
-        fprintf(file, "YUV4MPEG2 W%d H%d F12:1 Ip A1:1 Cmono\n", (int)width_px, (int)height_px);
+    if (format->container != CAPTURE_Y4M)
+        return;
+    bool whole = fps == floor(fps);
+    fprintf(file, "YUV4MPEG2 W%d H%d F%.0f:%d Ip A1:1 Cmono\n", (int)width_px, (int)height_px,
+            whole ? fps : 1000 * fps, whole ? 1 : 1000);
 }
 
 /* ---- Frames -------------------------------------------------------------------------------------------- */
@@ -146,9 +153,27 @@ static void write_chroma(FILE *file, capture_chroma chroma, int32_t height_px, s
         putc(i < pairs ? CHROMA_BLUE : CHROMA_RED, file);
 }
 
+/* Samples of 8 bits. */
+static bool write_png(FILE *file, const uint16_t *samples, int32_t width_px, int32_t height_px)
+{
+    size_t count = (size_t)width_px * (size_t)height_px, size = 0;
+    uint8_t *pixels = malloc(count), *png = NULL;
+    error_text only_memory;
+    for (size_t i = 0; pixels != NULL && i < count; i++)
+        pixels[i] = (uint8_t)samples[i];
+    bool done = pixels != NULL && opencv_encode_png(pixels, width_px, height_px, &png, &size, &only_memory);
+    if (done)
+        fwrite(png, 1, size, file);
+    free(png);
+    free(pixels);
+    return done;
+}
+
 bool capture_write_frame(FILE *file, const capture_format *format, const uint16_t *samples, int32_t width_px,
                          int32_t height_px, size_t stride_bytes)
 {
+    if (format->container == CAPTURE_PNG)
+        return write_png(file, samples, width_px, height_px);
     uint8_t *row = malloc(stride_bytes);
     uint16_t *line = malloc((size_t)width_px * sizeof *line);
     bool done = row != NULL && line != NULL;

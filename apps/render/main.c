@@ -1,108 +1,164 @@
-/* tapemark-render: writes rendered camera views of tapes, with the truth about them. */
-#include <errno.h>
+/* tapemark-render: what a camera sees of tapes and other markers, with the truth about it. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "capture.h"
+#include "frame_output.h"
+#include "output_file.h"
+#include "process.h"
 #include "render_options.h"
 #include "scene.h"
+#include "stage.h"
 #include "truth_json.h"
-#include "walk.h"
 
-static bool render(const render_options *all, const scene *view, uint16_t *samples, scene_truth *truth)
+#define PROGRAM "tapemark-render"
+
+enum { EXIT_BAD_INPUT = 1, EXIT_BAD_USAGE = 2 };
+
+/* One line, whatever the text holds. */
+static int fail(int status, const error_text *error)
 {
-    if (view->sensor.jpeg_quality == 0 || capture_bits(all->format) > 8)
-        return scene_render_samples(view, capture_bits(all->format), samples, truth);
+    fputs(PROGRAM ": ", stderr);
+    for (const char *at = error->text; *at != '\0'; at++)
+        fputc((unsigned char)*at < 0x20 || *at == 0x7f ? '?' : *at, stderr);
+    fputc('\n', stderr);
+    return status;
+}
 
-    size_t count = (size_t)view->width_px * (size_t)view->height_px;
-    uint8_t *pixels = malloc(count);
-    bool done = pixels != NULL && scene_render(view, pixels, truth);
-    for (size_t i = 0; done && i < count; i++)
-        samples[i] = pixels[i];
-    free(pixels);
+/* ---- Frames -------------------------------------------------------------------------------------------- */
+
+typedef struct render_run {
+    const render_options *all;
+    stage here;
+    uint16_t *samples;
+    uint8_t *pixels;
+    frame_output *output;
+    output_file *truth;
+} render_run;
+
+static bool render(const render_run *run, scene_truth *truth)
+{
+    const scene *view = &run->here.view;
+    unsigned bits = capture_bits(run->all->format);
+    if (view->sensor.jpeg_quality == 0)
+        return scene_render_samples(view, bits, run->samples, truth);
+    bool done = scene_render(view, run->pixels, truth);
+    for (size_t i = 0; done && i < (size_t)view->width_px * (size_t)view->height_px; i++)
+        run->samples[i] = run->pixels[i];
     return done;
 }
 
-static bool write_frame(const render_options *all, const scene *view, int frame, FILE *output, FILE *truth_file)
+static bool write_frames(render_run *run, error_text *error)
 {
     static scene_truth truth;
-    uint16_t *samples = malloc((size_t)view->width_px * (size_t)view->height_px * sizeof *samples);
-    bool done = samples != NULL && render(all, view, samples, &truth) &&
-                capture_write_frame(output, all->format, samples, view->width_px, view->height_px,
-                                    (size_t)all->stride_bytes);
-    free(samples);
+    for (size_t frame = 0; frame < run->here.frame_count; frame++) {
+        if (!stage_show(&run->here, frame, error))
+            return false;
+        if (!render(run, &truth)) {
+            error_text_set(error, "not enough memory for frames of %d x %d px", (int)run->here.view.width_px,
+                           (int)run->here.view.height_px);
+            return false;
+        }
+        if (!frame_output_add(run->output, run->samples, error))
+            return false;
+        if (run->truth != NULL)
+            truth_json_frame(output_file_stream(run->truth), frame, run->here.time_s, &run->here.view,
+                             run->here.picture_count, &truth);
+    }
+    return true;
+}
+
+static bool open_outputs(render_run *run, error_text *error)
+{
+    const render_options *all = run->all;
+    const frame_output_plan wanted = {all->output_path, all->format, all->view.width_px, all->view.height_px,
+                                      (size_t)all->stride_bytes, run->here.frame_count, all->fps};
+    size_t count = (size_t)all->view.width_px * (size_t)all->view.height_px;
+    run->samples = malloc(count * sizeof *run->samples);
+    run->pixels = malloc(count);
+    if (run->samples == NULL || run->pixels == NULL) {
+        error_text_set(error, "not enough memory");
+        return false;
+    }
+    run->output = frame_output_open(&wanted, error);
+    if (run->output == NULL || all->truth_path == NULL)
+        return run->output != NULL;
+    error_text reason;
+    run->truth = output_file_open(all->truth_path, &reason);
+    if (run->truth == NULL)
+        error_text_set(error, "%.200s: %.150s", all->truth_path, reason.text);
+    return run->truth != NULL;
+}
+
+/* Both are written before one of them gets its name. */
+static bool publish(render_run *run, error_text *error)
+{
+    error_text reason;
+    if (!frame_output_complete(run->output, error))
+        return false;
+    bool done = run->truth == NULL || output_file_complete(run->truth, &reason);
+    if (done && !frame_output_publish(run->output, error))
+        return false;
+    if (done && run->truth != NULL) {
+        done = output_file_publish(run->truth, &reason);
+        run->truth = NULL;
+    }
     if (!done)
-        fputs("tapemark-render: out of memory\n", stderr);
-    else if (truth_file != NULL)
-        truth_json_frame(truth_file, frame, view, &truth);
+        error_text_set(error, "%.200s: %.150s", run->all->truth_path, reason.text);
     return done;
 }
 
-static bool write_frames(render_options *all, FILE *output, FILE *truth_file)
+static bool run_all(const render_options *all, error_text *error)
 {
-    capture_write_header(output, all->format, all->view.width_px, all->view.height_px);
-    if (!all->walk) {
-        scene_tape tape = scene_tape_of(all->ids, all->id_count, all->bars);
-        scene_place(&all->view, &tape, all->pose);
-        all->view.tapes = &tape;
-        all->view.tape_count = 1;
-        return write_frame(all, &all->view, 0, output, truth_file);
-    }
-    walk way;
-    walk_begin(&way, &all->view);
-    for (int frame = 0; frame < (int)all->frame_count; frame++) {
-        walk_to(&way, frame, (int)all->frame_count);
-        if (!write_frame(all, &way.view, frame, output, truth_file))
-            return false;
-    }
-    return true;
+    render_run run = {.all = all};
+    bool done = stage_open(&run.here, all, error) && open_outputs(&run, error) && write_frames(&run, error) &&
+                publish(&run, error);
+    output_file_discard(run.truth);
+    frame_output_close(run.output);
+    stage_close(&run.here);
+    free(run.samples);
+    free(run.pixels);
+    return done;
 }
 
-static FILE *open_for_writing(const char *path)
-{
-    FILE *file = fopen(path, "wb");
-    if (file == NULL)
-        fprintf(stderr, "tapemark-render: %s: %s\n", path, strerror(errno));
-    return file;
-}
+/* ---- The program --------------------------------------------------------------------------------------- */
 
-static bool close_written(FILE *file, const char *path)
+static int print(const char *const *pieces)
 {
-    bool failed = ferror(file) != 0;
-    if (fclose(file) != 0 || failed) {
-        fprintf(stderr, "tapemark-render: %s: cannot be written: %s\n", path, strerror(errno));
-        return false;
-    }
-    return true;
-}
-
-static bool write_all(render_options *all)
-{
-    FILE *output = open_for_writing(all->output_path);
-    if (output == NULL)
-        return false;
-    FILE *truth_file = all->truth_path != NULL ? open_for_writing(all->truth_path) : NULL;
-    bool done = all->truth_path == NULL || truth_file != NULL;
-    if (truth_file != NULL)
-        truth_json_begin(truth_file);
-    done = done && write_frames(all, output, truth_file);
-    if (truth_file != NULL) {
-        truth_json_end(truth_file);
-        done = close_written(truth_file, all->truth_path) && done;
-    }
-    return close_written(output, all->output_path) && done;
-}
-
-int main(int argc, char **argv)
-{
-    enum { EXIT_BAD_USAGE = 2 };
-    static render_options all;
-    if (argc == 2 && strcmp(argv[1], "--help") == 0) {
-        fputs(render_usage, stdout);
+    error_text error;
+    for (; *pieces != NULL; pieces++)
+        fputs(*pieces, stdout);
+    if (fflush(stdout) == 0 && ferror(stdout) == 0)
         return EXIT_SUCCESS;
+    error_text_set(&error, "standard output: cannot be written");
+    return fail(EXIT_BAD_INPUT, &error);
+}
+
+static int answer(int argc, char *argv[], render_options *all)
+{
+    error_text error;
+    char version[64];
+    switch (render_options_parse(argc, argv, all, &error)) {
+    case OPTIONS_HELP:
+        return print(render_help);
+    case OPTIONS_VERSION:
+        snprintf(version, sizeof version, PROGRAM " %s\n", tapemark_version());
+        return print((const char *const[]){version, NULL});
+    case OPTIONS_WRONG:
+        return fail(EXIT_BAD_USAGE, &error);
+    case OPTIONS_RUN:
+        break;
     }
-    if (!render_options_parse(&all, argc, argv))
-        return EXIT_BAD_USAGE;
-    return write_all(&all) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return run_all(all, &error) ? EXIT_SUCCESS : fail(EXIT_BAD_INPUT, &error);
+}
+
+int main(int argc, char *argv[])
+{
+    static render_options all;
+    if (!process_prepare()) {
+        error_text error = {"standard output: is closed"};
+        return fail(EXIT_BAD_INPUT, &error);
+    }
+    int status = answer(argc, argv, &all);
+    render_options_release(&all);
+    return status;
 }

@@ -1,273 +1,255 @@
 #include "render_options.h"
 
-#include <errno.h>
-#include <stdio.h>
+#include <getopt.h>
 #include <stdlib.h>
-#include <string.h>
 
-const char render_usage[] =
-    "usage: tapemark-render [OPTION VALUE]... OUTPUT\n"
-    "Renders a camera's view of a tape, or of a whole walk past some, into OUTPUT.\n"
-    "\n"
-    "  --scene frame|walk   one picture of one tape (default), or a cart's way along a wall\n"
-    "  --size WxH           of the picture, in px (640x480)\n"
-    "  --frames N           pictures of a walk (24)\n"
-    "  --format NAME        PGM Y4M GREY Y10 Y10P YUYV UYVY NV12 YU12 SRGGB8 SRGGB10 SRGGB10P;\n"
-    "                       by default PGM or Y4M as OUTPUT ends in .pgm or .y4m\n"
-    "  --stride BYTES       of a row in headerless formats (as short as can be)\n"
-    "  --truth FILE         ids, corners and scales of what is in view, as JSON\n"
-    "  --seed N             of noise and random backgrounds (1)\n"
-    "\n"
-    "The tape of a frame:\n"
-    "  --ids LIST           such as 0,-1,2 (7,-8,9)      --bars yes|no        (yes)\n"
-    "  --px-per-module PX   head on (3)                  --x PX, --y PX       from the centre (0)\n"
-    "  --yaw DEG, --pitch DEG, --roll DEG                right end away, top nearer, clockwise (0)\n"
-    "\n"
-    "Background of a frame:\n"
-    "  --background NAME    plain noise popcorn blinds checkerboard stripes text squares grid-codes finder-rows\n"
-    "  --light SHADE, --dark SHADE (160, 60)             --scale PX, --angle DEG (8, 0)\n"
-    "\n"
-    "Light and camera:\n"
-    "  --gradient SHARE, --gradient-angle DEG            over the diagonal (0)\n"
-    "  --shadow DEPTH, --shadow-angle DEG, --shadow-offset PX, --shadow-soft PX (0)\n"
-    "  --focal PX (width)   --defocus PX (0.5)           --motion PX, --motion-angle DEG (0)\n"
-    "  --exposure TIMES (1) --gamma EXPONENT (1)         --noise GRAY, --shot-noise GRAY (1, 2)\n"
-    "  --jpeg QUALITY       only for 8-bit formats (none)\n";
+#include "option_values.h"
+#include "render_choices.h"
+#include "thing_options.h"
 
-static void complain(const char *option, const char *value, const char *right)
+/* ---- How it is seen ------------------------------------------------------------------------------------ */
+
+static bool take_scene(render_options *all, const char *text, error_text *error)
 {
-    fprintf(stderr, "tapemark-render: %s: \"%s\": expected %s\n", option, value, right);
-}
-
-static bool parse_number(const char *option, const char *value, double *number)
-{
-    char *end;
-    *number = strtod(value, &end);
-    if (end == value || *end != '\0' || *number != *number) {
-        complain(option, value, "a number");
-        return false;
-    }
-    return true;
-}
-
-static bool parse_size(render_options *all, const char *value)
-{
-    char *end;
-    long width = strtol(value, &end, 10), height = *end == 'x' ? strtol(end + 1, &end, 10) : 0;
-    if (*end != '\0' || width < 1 || width > SCENE_SIDE_MAX_PX || height < 1 || height > SCENE_SIDE_MAX_PX) {
-        complain("--size", value, "WIDTHxHEIGHT, both 1 to 8192");
-        return false;
-    }
-    all->view.width_px = (int32_t)width;
-    all->view.height_px = (int32_t)height;
-    return true;
-}
-
-static bool parse_ids(render_options *all, const char *value)
-{
-    const char *at = value;
-    for (all->id_count = 0; all->id_count < RENDER_IDS_MAX; at++) {
-        char *end;
-        errno = 0;
-        long id = strtol(at, &end, 10);
-        if (end == at || errno != 0 || id < -TAPEMARK_MAX_ID || id > TAPEMARK_MAX_ID)
-            break;
-        all->ids[all->id_count++] = (int32_t)id;
-        at = end;
-        if (*at == '\0')
-            return true;
-        if (*at != ',')
-            break;
-    }
-    complain("--ids", value, "up to 64 numbers from -1505582 to 1505582 with commas between them");
-    return false;
-}
-
-static bool parse_choice(const char *option, const char *value, const char *const *names, size_t count,
-                         size_t *choice)
-{
-    for (*choice = 0; *choice < count; ++*choice) {
-        if (strcmp(names[*choice], value) == 0)
-            return true;
-    }
-    fprintf(stderr, "tapemark-render: %s: \"%s\": expected one of", option, value);
-    for (size_t i = 0; i < count; i++)
-        fprintf(stderr, " %s", names[i]);
-    fputc('\n', stderr);
-    return false;
-}
-
-static bool parse_named(render_options *all, const char *option, const char *value)
-{
-    static const char *const backgrounds[SCENE_CLUTTER_COUNT] = {
-        "plain", "noise", "popcorn", "blinds", "checkerboard", "stripes", "text", "squares", "grid-codes",
-        "finder-rows", "room"};
-    static const char *const scenes[] = {"frame", "walk"}, *const answers[] = {"no", "yes"};
+    static const char *const names[] = {"frame", "walk"};
     size_t choice;
-    if (strcmp(option, "--background") == 0) {
-        if (!parse_choice(option, value, backgrounds, SCENE_CLUTTER_COUNT, &choice))
-            return false;
-        all->view.background.kind = (scene_clutter)choice;
-    } else if (strcmp(option, "--scene") == 0) {
-        if (!parse_choice(option, value, scenes, 2, &choice))
-            return false;
-        all->walk = choice == 1;
-    } else {
-        if (!parse_choice(option, value, answers, 2, &choice))
-            return false;
-        all->bars = choice == 1;
-    }
+    if (!parse_choice(text, names, sizeof names / sizeof *names, &choice, error))
+        return false;
+    all->kind = choice == 1 ? RENDER_WALK : RENDER_HEAD_ON;
     return true;
 }
 
-static bool parse_format(render_options *all, const char *value)
+static bool take_camera(render_options *all, const char *text, error_text *error)
 {
-    all->format = capture_format_find(value);
-    if (all->format == NULL)
-        fprintf(stderr, "tapemark-render: --format: \"%s\": expected one of %s\n", value, capture_format_names());
-    return all->format != NULL;
-}
-
-/* A place for the number of an option; NULL when there is no such option. */
-static double *number_of(render_options *all, const char *option)
-{
-    const struct {
-        const char *name;
-        double *number;
-    } numbers[] = {
-        {"--angle", &all->view.background.angle_deg},
-        {"--dark", &all->view.background.dark},
-        {"--defocus", &all->view.optics.defocus_px},
-        {"--exposure", &all->view.sensor.exposure},
-        {"--focal", &all->focal_px},
-        {"--frames", &all->frame_count},
-        {"--gamma", &all->view.sensor.gamma},
-        {"--gradient", &all->view.light.gradient},
-        {"--gradient-angle", &all->view.light.gradient_deg},
-        {"--jpeg", &all->jpeg_quality},
-        {"--light", &all->view.background.light},
-        {"--motion", &all->view.optics.motion_px},
-        {"--motion-angle", &all->view.optics.motion_deg},
-        {"--noise", &all->view.sensor.read_noise},
-        {"--pitch", &all->pose.pitch_deg},
-        {"--px-per-module", &all->pose.px_per_module},
-        {"--roll", &all->pose.roll_deg},
-        {"--scale", &all->view.background.scale_px},
-        {"--seed", &all->seed},
-        {"--shadow", &all->view.light.shadow_depth},
-        {"--shadow-angle", &all->view.light.shadow_deg},
-        {"--shadow-offset", &all->view.light.shadow_offset_px},
-        {"--shadow-soft", &all->view.light.shadow_soft_px},
-        {"--shot-noise", &all->view.sensor.shot_noise},
-        {"--stride", &all->stride_bytes},
-        {"--x", &all->pose.dx_px},
-        {"--y", &all->pose.dy_px},
-        {"--yaw", &all->pose.yaw_deg},
-    };
-    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; i++) {
-        if (strcmp(numbers[i].name, option) == 0)
-            return numbers[i].number;
-    }
-    return NULL;
-}
-
-static bool parse_option(render_options *all, const char *option, const char *value)
-{
-    double *number = number_of(all, option);
-    if (number != NULL)
-        return parse_number(option, value, number);
-    if (strcmp(option, "--size") == 0)
-        return parse_size(all, value);
-    if (strcmp(option, "--ids") == 0)
-        return parse_ids(all, value);
-    if (strcmp(option, "--format") == 0)
-        return parse_format(all, value);
-    if (strcmp(option, "--scene") == 0 || strcmp(option, "--background") == 0 || strcmp(option, "--bars") == 0)
-        return parse_named(all, option, value);
-    if (strcmp(option, "--truth") == 0) {
-        all->truth_path = value;
-        return true;
-    }
-    fprintf(stderr, "tapemark-render: %s: no such option; see tapemark-render --help\n", option);
-    return false;
-}
-
-static bool ends_in(const char *text, const char *ending)
-{
-    size_t length = strlen(text), ending_length = strlen(ending);
-    return length >= ending_length && strcmp(text + length - ending_length, ending) == 0;
-}
-
-static bool whole_within(const char *option, double value, double least, double most)
-{
-    if (value >= least && value <= most && value == (double)(int64_t)value)
-        return true;
-    fprintf(stderr, "tapemark-render: %s: expected a whole number from %.0f to %.0f\n", option, least, most);
-    return false;
-}
-
-static bool choose_format(render_options *all)
-{
-    if (all->format == NULL && ends_in(all->output_path, ".pgm"))
-        all->format = capture_format_find("PGM");
-    if (all->format == NULL && ends_in(all->output_path, ".y4m"))
-        all->format = capture_format_find("Y4M");
-    if (all->format == NULL)
-        fprintf(stderr, "tapemark-render: %s: ends neither in .pgm nor in .y4m: say --format\n", all->output_path);
-    return all->format != NULL;
-}
-
-static bool choose_stride(render_options *all)
-{
-    double least = (double)capture_least_stride(all->format, all->view.width_px);
-    bool may_be_longer = all->format->container == CAPTURE_HEADERLESS;
-    if (all->stride_bytes == 0)
-        all->stride_bytes = least;
-    if (all->stride_bytes == least || (all->stride_bytes > least && may_be_longer))
-        return true;
-    fprintf(stderr, "tapemark-render: --stride: a row of %d px of %s is %s%.0f bytes\n", (int)all->view.width_px,
-            all->format->name, may_be_longer ? "at least " : "", least);
-    return false;
-}
-
-/* What can only be said when all options are known. */
-static bool complete(render_options *all)
-{
-    if (!choose_format(all) || !whole_within("--frames", all->frame_count, 1, 100000) ||
-        !whole_within("--seed", all->seed, 0, 1e15) || !whole_within("--jpeg", all->jpeg_quality, 0, 100) ||
-        !whole_within("--stride", all->stride_bytes, 0, 1e6) || !choose_stride(all))
+    double place[6] = {0};
+    if (!parse_numbers(text, 4, 6, place, "X,Y,HEIGHT,HEADING[,PITCH[,ROLL]] in metres and degrees", error))
         return false;
-    if (!capture_fits(all->format, all->view.width_px, all->view.height_px)) {
-        fprintf(stderr, "tapemark-render: --size: %s comes in groups of pixels: sides must be multiples of 4\n",
-                all->format->name);
-        return false;
-    }
-    if (!all->walk && !(all->pose.px_per_module > 0.01 && all->pose.px_per_module < 1e4)) {
-        fputs("tapemark-render: --px-per-module: expected 0.01 to 10000\n", stderr);
-        return false;
-    }
-    all->view.seed = (uint64_t)all->seed;
-    all->view.sensor.jpeg_quality = (int)all->jpeg_quality;
-    all->view.camera.focal_px = all->focal_px == 0 ? all->view.width_px : all->focal_px;
-    const char *problem = scene_problem(&all->view);
+    all->camera_given = true;
+    all->camera = (camera_waypoint){.x_m = place[0], .y_m = place[1], .height_m = place[2], .heading_deg = place[3],
+                                    .pitch_deg = place[4], .roll_deg = place[5]};
+    const char *problem = camera_waypoint_problem(&all->camera);
     if (problem != NULL)
-        fprintf(stderr, "tapemark-render: %s\n", problem);
+        error_text_set(error, "%s", problem);
     return problem == NULL;
 }
 
-bool render_options_parse(render_options *all, int argc, char **argv)
+static bool take_path(render_options *all, const char *text, error_text *error)
 {
-    *all = (render_options){.view = scene_default(640, 480), .pose = {.px_per_module = 3}, .ids = {7, -8, 9},
-                            .id_count = 3, .bars = true, .frame_count = 24, .seed = 1};
-    int at = 1;
-    for (; at + 1 < argc && argv[at][0] == '-'; at += 2) {
-        if (!parse_option(all, argv[at], argv[at + 1]))
-            return false;
-    }
-    if (at != argc - 1 || argv[at][0] == '-') {
-        fputs("tapemark-render: expected options, each with a value, and one OUTPUT; see tapemark-render --help\n", stderr);
+    (void)error;
+    all->path_path = text;
+    return true;
+}
+
+/* What was measured on the video of the marker's inventors, see tests/render/test_condition_a.cpp. */
+static bool take_like(render_options *all, const char *text, error_text *error)
+{
+    static const char *const names[] = {"condition-a"};
+    size_t choice;
+    if (!parse_choice(text, names, 1, &choice, error))
         return false;
+    all->paper = 203;
+    all->ink = 22;
+    all->focal_widths = 1.37;
+    all->view.optics.defocus_px = 0.56;
+    all->view.sensor.read_noise = 0.25;
+    all->view.sensor.shot_noise = 0;
+    return true;
+}
+
+/* ---- Output -------------------------------------------------------------------------------------------- */
+
+static bool take_size(render_options *all, const char *text, error_text *error)
+{
+    return parse_size(text, SCENE_SIDE_MAX_PX, &all->view.width_px, &all->view.height_px, error);
+}
+
+static bool take_format(render_options *all, const char *text, error_text *error)
+{
+    all->format = capture_format_find(text);
+    if (all->format == NULL)
+        error_text_set(error, "expected one of %s, not \"%.40s\"", capture_format_names(), text);
+    return all->format != NULL;
+}
+
+static bool take_truth(render_options *all, const char *text, error_text *error)
+{
+    (void)error;
+    all->truth_path = text;
+    return true;
+}
+
+static bool take_output(render_options *all, const char *text, error_text *error)
+{
+    (void)error;
+    all->output_path = text;
+    return true;
+}
+
+/* ---- All options --------------------------------------------------------------------------------------- */
+
+/* An option has a number of its own, or its value is taken by a function. */
+typedef struct known_option {
+    const char *name;
+    bool (*take)(render_options *all, const char *text, error_text *error);
+    size_t offset;
+    value_range range;
+} known_option;
+
+#define TAKEN(name, take) {name, take, 0, {VALUE_NUMBER, 0, 0}}
+#define NUMBER(name, member, kind, least, most) {name, NULL, offsetof(render_options, member), {kind, least, most}}
+
+static const known_option known_options[] = {
+    TAKEN("ids", take_ids),
+    TAKEN("picture", take_picture),
+    TAKEN("at", take_place),
+    TAKEN("map", take_map),
+    TAKEN("bars", take_bars),
+    TAKEN("cover", take_cover),
+    TAKEN("box", take_box),
+    TAKEN("furnished", take_furnished),
+    TAKEN("background", take_background),
+    TAKEN("wall", take_wall),
+    TAKEN("floor", take_floor),
+    TAKEN("scene", take_scene),
+    TAKEN("camera", take_camera),
+    TAKEN("path", take_path),
+    TAKEN("like", take_like),
+    TAKEN("size", take_size),
+    TAKEN("format", take_format),
+    TAKEN("truth", take_truth),
+    TAKEN("output", take_output),
+    NUMBER("module", module_m, VALUE_LENGTH, 1e-5, 10),
+    NUMBER("paper", paper, VALUE_NUMBER, 0, 255),
+    NUMBER("ink", ink, VALUE_NUMBER, 0, 255),
+    NUMBER("gap", gap_m, VALUE_LENGTH, 0, 1000),
+    NUMBER("border", border_m, VALUE_LENGTH, 0, 10),
+    NUMBER("wall-height", wall_height_m, VALUE_LENGTH, 0.01, 100),
+    NUMBER("covered", covered_share, VALUE_NUMBER, 0, 1),
+    NUMBER("px-per-module", pose.px_per_module, VALUE_NUMBER, 0.01, 1e4),
+    NUMBER("distance", distance_m, VALUE_LENGTH, 0.001, 10000),
+    NUMBER("yaw", pose.yaw_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("pitch", pose.pitch_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("roll", pose.roll_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("x", pose.dx_px, VALUE_NUMBER, -1e5, 1e5),
+    NUMBER("y", pose.dy_px, VALUE_NUMBER, -1e5, 1e5),
+    NUMBER("focal", focal_px, VALUE_NUMBER, 1, 1e6),
+    NUMBER("fps", fps, VALUE_NUMBER, 0.001, 10000),
+    NUMBER("shutter", shutter_s, VALUE_TIME, 0, 10),
+    NUMBER("readout", readout_s, VALUE_TIME, 0, 10),
+    NUMBER("frames", frame_count, VALUE_WHOLE, 1, 100000),
+    NUMBER("light", view.background.light, VALUE_NUMBER, 0, 255),
+    NUMBER("dark", view.background.dark, VALUE_NUMBER, 0, 255),
+    NUMBER("scale", view.background.scale_px, VALUE_NUMBER, 0.1, 1e4),
+    NUMBER("angle", view.background.angle_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("gradient", view.light.gradient, VALUE_NUMBER, 0, 2),
+    NUMBER("gradient-angle", view.light.gradient_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("shadow", view.light.shadow_depth, VALUE_NUMBER, 0, 1),
+    NUMBER("shadow-angle", view.light.shadow_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("shadow-offset", view.light.shadow_offset_px, VALUE_NUMBER, -1e5, 1e5),
+    NUMBER("shadow-soft", view.light.shadow_soft_px, VALUE_NUMBER, 0, 1e5),
+    NUMBER("vignetting", view.light.vignetting, VALUE_NUMBER, 0, 0.99),
+    NUMBER("defocus", view.optics.defocus_px, VALUE_NUMBER, 0, 70),
+    NUMBER("disc", view.optics.disc_px, VALUE_NUMBER, 0, 70),
+    NUMBER("motion", view.optics.motion_px, VALUE_NUMBER, 0, 120),
+    NUMBER("motion-angle", view.optics.motion_deg, VALUE_NUMBER, -360, 360),
+    NUMBER("exposure", view.sensor.exposure, VALUE_NUMBER, 0, 1000),
+    NUMBER("gamma", view.sensor.gamma, VALUE_NUMBER, 0.1, 10),
+    NUMBER("bloom", view.sensor.bloom, VALUE_NUMBER, 0, 1),
+    NUMBER("bloom-size", view.sensor.bloom_px, VALUE_NUMBER, 0, 70),
+    NUMBER("noise", view.sensor.read_noise, VALUE_NUMBER, 0, 255),
+    NUMBER("shot-noise", view.sensor.shot_noise, VALUE_NUMBER, 0, 255),
+    NUMBER("pixel-noise", view.sensor.pixel_noise, VALUE_NUMBER, 0, 255),
+    NUMBER("column-noise", view.sensor.column_noise, VALUE_NUMBER, 0, 255),
+    NUMBER("jpeg", jpeg_quality, VALUE_WHOLE, 1, 100),
+    NUMBER("seed", seed, VALUE_WHOLE, 0, 1e15),
+    NUMBER("stride", stride_bytes, VALUE_WHOLE, 1, 1e6),
+};
+
+enum { KNOWN_OPTIONS = sizeof known_options / sizeof *known_options, FIRST_CODE = 256,
+       CODE_HELP = FIRST_CODE + KNOWN_OPTIONS, CODE_VERSION };
+
+static bool apply_option(render_options *all, const known_option *option, const char *text, error_text *error)
+{
+    error_text reason;
+    bool done = option->take != NULL
+                    ? option->take(all, text, &reason)
+                    : parse_value(text, option->range, (double *)(void *)((char *)all + option->offset), &reason);
+    if (!done)
+        error_text_set(error, "--%s: %s", option->name, reason.text);
+    return done;
+}
+
+static void list_options(struct option *list)
+{
+    for (int i = 0; i < KNOWN_OPTIONS; i++)
+        list[i] = (struct option){known_options[i].name, required_argument, NULL, FIRST_CODE + i};
+    list[KNOWN_OPTIONS] = (struct option){"help", no_argument, NULL, CODE_HELP};
+    list[KNOWN_OPTIONS + 1] = (struct option){"version", no_argument, NULL, CODE_VERSION};
+    list[KNOWN_OPTIONS + 2] = (struct option){0};
+}
+
+static void tell_unknown(char *argv[], error_text *error)
+{
+    if (optopt > 0 && optopt < FIRST_CODE)
+        error_text_set(error, "unknown option '-%c' (--help lists all)", optopt);
+    else
+        error_text_set(error, "option '%.80s' is unknown, ambiguous or takes no value (--help lists all)",
+                       argv[optind - 1]);
+}
+
+static options_answer take_options(render_options *all, int argc, char *argv[], error_text *error)
+{
+    struct option list[KNOWN_OPTIONS + 3];
+    list_options(list);
+    opterr = 0;
+    optind = 1;
+    for (int code; (code = getopt_long(argc, argv, ":o:", list, NULL)) != -1;) {
+        if (code == CODE_HELP)
+            return OPTIONS_HELP;
+        if (code == CODE_VERSION)
+            return OPTIONS_VERSION;
+        if (code == ':') {
+            error_text_set(error, "%s needs a value", argv[optind - 1]);
+            return OPTIONS_WRONG;
+        }
+        if (code == '?') {
+            tell_unknown(argv, error);
+            return OPTIONS_WRONG;
+        }
+        if (code == 'o')
+            all->output_path = optarg;
+        else if (!apply_option(all, &known_options[code - FIRST_CODE], optarg, error))
+            return OPTIONS_WRONG;
     }
-    all->output_path = argv[at];
-    return complete(all);
+    return OPTIONS_RUN;
+}
+
+/* ---- The command line ---------------------------------------------------------------------------------- */
+
+options_answer render_options_parse(int argc, char *argv[], render_options *all, error_text *error)
+{
+    *all = (render_options){
+        .view = scene_default(640, 480),
+        .bars = RENDER_BARS_OF_TMS,
+        .module_m = 0.06 / TAPEMARK_HEIGHT_MODULES,
+        .paper = 190,
+        .ink = 32,
+        .gap_m = 0.06,
+        .wall_height_m = 2.5,
+        .wall = {.look = SCENE_LOOK_PAINT},
+        .floor = {.look = SCENE_LOOK_WOOD},
+        .focal_widths = 1,
+        .fps = 12,
+        .seed = 1,
+    };
+    options_answer answer = take_options(all, argc, argv, error);
+    if (answer != OPTIONS_RUN)
+        return answer;
+    return render_choose(all, argc - optind, argv + optind, error) ? OPTIONS_RUN : OPTIONS_WRONG;
+}
+
+void render_options_release(render_options *all)
+{
+    for (size_t i = 0; i < all->thing_count; i++)
+        free(all->things[i].picture_name);
 }

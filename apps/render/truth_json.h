@@ -1,13 +1,13 @@
-/* The truth about a video as JSON: an array with an object a frame. */
-#ifndef SCENE_TRUTH_JSON_H
-#define SCENE_TRUTH_JSON_H
+/* The truth about a frame as JSON: one line, see README.md. */
+#ifndef RENDER_TRUTH_JSON_H
+#define RENDER_TRUTH_JSON_H
 
 #include <stdio.h>
 
 #include "scene.h"
 
-void truth_json_begin(FILE *file);
-void truth_json_frame(FILE *file, int frame, const scene *view, const scene_truth *truth);
-void truth_json_end(FILE *file);
+/* `picture_count`: pictures behind these are covers, and are left out. */
+void truth_json_frame(FILE *file, size_t frame, double time_s, const scene *view, size_t picture_count,
+                      const scene_truth *truth);
 
 #endif

@@ -1,6 +1,6 @@
 /* A cart's camera passes tapes on a baseboard: obliquely at first, then nearly head on. */
-#ifndef SCENE_WALK_H
-#define SCENE_WALK_H
+#ifndef RENDER_WALK_H
+#define RENDER_WALK_H
 
 #include "scene.h"
 

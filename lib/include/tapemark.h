@@ -49,9 +49,11 @@ typedef enum tapemark_status {
     TAPEMARK_NOTHING_FOUND = 1,  /* the whole image was looked at, and no marker was read */
     TAPEMARK_NO_ROOM = 2,        /* more markers were read than the caller's arrays hold; those are full */
     TAPEMARK_UNFINISHED = 3,     /* nothing was read, but a limit was hit first (see tapemark_stats.limits) */
+    TAPEMARK_AMBIGUOUS = 4,      /* more than one place on the map fits */
     TAPEMARK_BAD_CALL = -1,      /* NULL, a size of zero, a stride below the width, an id out of range, … */
     TAPEMARK_BAD_CONFIG = -2,    /* a field of tapemark_config is out of its range */
-    TAPEMARK_BAD_WORKSPACE = -3  /* the workspace is NULL or smaller than tapemark_workspace_bytes() */
+    TAPEMARK_BAD_WORKSPACE = -3, /* the workspace is NULL or smaller than tapemark_workspace_bytes() */
+    TAPEMARK_BAD_MAP = -4        /* an entry of the map is out of order or out of its range */
 } tapemark_status;
 
 /* A short English phrase for a status. Static storage; never NULL, also for values not listed above. */
@@ -273,6 +275,85 @@ size_t tapemark_workspace_bytes(int32_t width_px, int32_t height_px);
  * A limit that was hit is not an error: what was read stands, and stats.limits names the limit. */
 tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config,
                                 void *workspace, size_t workspace_size, tapemark_result *result);
+
+/* ---- Places on a plan ---------------------------------------------------------------------------------- */
+
+/* A plan is seen from above: x to the right, y down, in metres. Directions are those in which a marker reads.
+ *
+ * A map is a table that the caller owns and that is never written to: it may stand in flash.
+ *
+ *     static const int32_t ids[] = {-2, -1, 0, 3};
+ *     static const tapemark_map_cm cms[] = {
+ *         {2.43f, 0.11f, 1, 0, 0, 2}, {2.21f, 0.11f, 1, 0, 0, 1}, {2, 0.11f, 1, 0, 0, 0}, {3.5f, 0.2f, 0, 0, -1, -1}};
+ *     static const tapemark_map_tm tms[] = {{4, 3, true, 2.21f, 0.11f, 1, 0}};
+ *     static const tapemark_map map = {ids, cms, 4, tms, 1};
+ *
+ * A CM takes 28 bytes and a TM 32, so that 100 000 CMs fit into 4 MB, even in TMs of three. Float holds places up to
+ * 2 km from the origin to 0.1 mm. */
+
+enum { TAPEMARK_MAP_CODE_MAX = 64 };
+
+typedef struct tapemark_map_cm {
+    float x_m, y_m;  /* of its centre */
+    float dx, dy;    /* the direction in which it reads, a vector of length 1; 0, 0: unknown */
+    int32_t tm;      /* index among the map's tms; -1: it stands alone */
+    int16_t slot;    /* its place in that TM, from 0; -1: unknown, or it stands alone */
+} tapemark_map_cm;
+
+typedef struct tapemark_map_tm {
+    uint64_t code;   /* read as a binary number: 4 for 100 */
+    uint8_t length;  /* number of CMs, TAPEMARK_TM_MIN_CMS to TAPEMARK_MAP_CODE_MAX */
+    bool placed;     /* whether its place is known */
+    float x_m, y_m;  /* of its middle */
+    float dx, dy;    /* as above */
+} tapemark_map_tm;
+
+/* The ids may serve as tapemark_config.known_ids as they are. */
+typedef struct tapemark_map {
+    const int32_t *ids;          /* ascending, without repetition */
+    const tapemark_map_cm *cms;  /* in the order of their ids */
+    size_t cm_count;
+    const tapemark_map_tm *tms;  /* ascending by length, among equals by code; codes may repeat */
+    size_t tm_count;
+} tapemark_map;
+
+/* Looks at a whole map once; the calls below rely on what this finds in order, but touch no memory outside of the
+ * table whatever it holds. TAPEMARK_BAD_MAP: `index`, which may be NULL, is set to that of the first bad CM, or to
+ * cm_count plus that of the first bad TM; TMs are looked at first. */
+tapemark_status tapemark_map_check(const tapemark_map *map, size_t *index);
+
+/* The index of a CM; TAPEMARK_NOTHING_FOUND, `index` untouched, for an id that is not on the map. */
+tapemark_status tapemark_map_find_cm(const tapemark_map *map, int32_t id, size_t *index);
+
+/* The index of the only TM with a code of '0' and '1'. Where it is not known which way the code was read
+ * (tapemark_tm.directed), it may also be there backwards. TAPEMARK_NOTHING_FOUND or TAPEMARK_AMBIGUOUS, `index`
+ * untouched, when none or several fit. */
+tapemark_status tapemark_map_find_tm(const tapemark_map *map, const char *code, bool directed, size_t *index);
+
+/* What the map says to a TM and the CMs that were read in it. */
+typedef enum tapemark_agreement {
+    TAPEMARK_AGREES,            /* the CMs are those that the map has in these places of this TM */
+    TAPEMARK_CODE_ALONE,        /* no CM was read in it; one TM of the map has its code */
+    TAPEMARK_CODE_AMBIGUOUS,    /* no CM was read in it; several TMs of the map have its code */
+    TAPEMARK_CODE_UNKNOWN,      /* no CM was read in it; no TM of the map has its code */
+    TAPEMARK_CODE_OF_OTHER_TM,  /* the map has another code for the TM of its CMs */
+    TAPEMARK_CM_UNKNOWN,        /* a CM in it is not on the map */
+    TAPEMARK_CM_WITHOUT_TM,     /* a CM in it stands alone on the map */
+    TAPEMARK_CMS_OF_SEVERAL_TMS,
+    TAPEMARK_CM_IN_OTHER_SLOT,
+    TAPEMARK_RUNS_BACKWARDS     /* the map has it the other way round, though its direction was read */
+} tapemark_agreement;
+
+typedef struct tapemark_tm_place {
+    tapemark_agreement agreement;
+    int32_t tm;      /* index among the map's tms when they agree, or the code alone tells; else -1 */
+    bool backwards;  /* the corners that were read run against the map's direction: it was read undirected */
+} tapemark_tm_place;
+
+/* Where a TM that was read hangs: TAPEMARK_OK when place->tm is set, else TAPEMARK_NOTHING_FOUND or
+ * TAPEMARK_AMBIGUOUS; place->agreement says why. */
+tapemark_status tapemark_map_locate_tm(const tapemark_map *map, const tapemark_result *result, size_t tm_index,
+                                       tapemark_tm_place *place);
 
 #ifdef __cplusplus
 }

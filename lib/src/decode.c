@@ -300,10 +300,11 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
                                .result = result,
                                .words = {settings.id_max, settings.known_ids, settings.known_id_count},
                                .upright = real_direction(settings.roll_deg)};
-    int next = 0, finders;
-    while ((finders = tmi_tape_next_chain(&w->tape, &next, w->segment.finders)) > 0) {
+    tmi_rows rows = {0};
+    int kept = 0, finders;
+    while ((finders = tmi_tape_next_chain(&w->tape, &rows, kept, w->segment.finders)) > 0) {
         result->stats.segments++;
-        tmi_segment_read(&reader, &w->segment, finders);
+        kept = tmi_segment_read(&reader, &w->segment, finders, rows.goes_on);
     }
     if (w->strokes.overflow)
         result->stats.limits |= TAPEMARK_LIMIT_CANDIDATES;

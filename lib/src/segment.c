@@ -408,7 +408,7 @@ static bool is_joint(const tmi_reader *reader, const tmi_segment *segment, int c
            has_bars(reader, (tmi_bars_place){&right_map, right, 0, -1});
 }
 
-void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count)
+int tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count, bool goes_on)
 {
     int cm_count = 0;
     for (; cm_count < finder_count - 1 && tmi_may_go_on(reader); cm_count++)
@@ -419,7 +419,16 @@ void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder
             read_part(reader, segment, first, cm - first);
             first = cm + 1;
         }
-    read_part(reader, segment, first, cm_count - first);
+    const bool cut = goes_on && first == 0;
+    if (cut && cm_count == finder_count - 1)
+        reader->result->stats.limits |= TAPEMARK_LIMIT_LENGTH;
+    if (!goes_on || cut) {
+        read_part(reader, segment, first, cm_count - first);
+        first = finder_count - 1;
+    }
+    for (int i = first; i < finder_count; i++)
+        segment->finders[i - first] = segment->finders[i];
+    return finder_count - first;
 }
 
 /* ---- Tapes far away ---------------------------------------------------------------------------------------- */

@@ -35,8 +35,9 @@ typedef struct tmi_tm_reading {
 void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm_count, const tmi_tm_reading *tm,
                           float turn, bool resolved);
 
-/* Reads the segment of `finder_count` finders already copied to segment->finders, and appends what is sure to
- * the result. */
-void tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count);
+/* Reads the segments of a row of `finder_count` finders already copied to segment->finders, and appends what is sure to
+ * the result. Of a row that goes on, the last segment may not be whole yet: its finders, and how many they are is
+ * returned, are moved to the front, to be read with what follows. A segment too long for that is cut. */
+int tmi_segment_read(const tmi_reader *reader, tmi_segment *segment, int finder_count, bool goes_on);
 
 #endif

@@ -265,13 +265,13 @@ void tmi_tape_link(tmi_tape *tape)
 
 /* ---- Rows -------------------------------------------------------------------------------------------------- */
 
-/* Follows the links from a row's end. A link is taken off when it is followed, so that each is followed once and
- * a circle cannot trap. */
-static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX_CHAIN], int *last)
+/* Follows the links from rows->last on, behind which the chain is filled up. A link is taken off when it is followed,
+ * so that each is followed once and a circle cannot trap. */
+static int follow(tmi_tape *tape, tmi_rows *rows, int count, tmi_finder chain[TMI_MAX_CHAIN])
 {
-    int count = 0;
-    chain[count++] = turned(&tape->nodes[i].finder, direction);
-    for (int j = tape->nodes[i].neighbour[direction]; j != TMI_NONE && count < TMI_MAX_CHAIN;) {
+    int i = rows->last, direction = rows->direction;
+    int j = tape->nodes[i].neighbour[direction];
+    while (j != TMI_NONE && count < TMI_MAX_CHAIN) {
         int back = 0;
         while (back < TMI_DIRECTIONS - 1 && tape->nodes[j].neighbour[back] != i)
             back++;
@@ -282,24 +282,25 @@ static int follow(tmi_tape *tape, int i, int direction, tmi_finder chain[TMI_MAX
         i = j;
         j = tape->nodes[i].neighbour[direction];
     }
-    *last = i;
+    rows->last = i;
+    rows->direction = direction;
+    rows->goes_on = j != TMI_NONE;
     return count;
 }
 
-int tmi_tape_next_chain(tmi_tape *tape, int *next, tmi_finder chain[TMI_MAX_CHAIN])
+int tmi_tape_next_chain(tmi_tape *tape, tmi_rows *rows, int kept, tmi_finder chain[TMI_MAX_CHAIN])
 {
-    for (; *next < tape->count; ++*next)
+    if (rows->goes_on)
+        return follow(tape, rows, kept, chain);
+    for (; rows->next < tape->count; rows->next++)
         for (int d = 0; d < TMI_DIRECTIONS; d++) {
-            const int16_t *neighbour = tape->nodes[*next].neighbour;
+            const int16_t *neighbour = tape->nodes[rows->next].neighbour;
             if (neighbour[d] == TMI_NONE || neighbour[(d + 2) & 3] != TMI_NONE)
                 continue;
-            int last;
-            const int count = follow(tape, *next, d, chain, &last);
-            if (count == TMI_MAX_CHAIN && !is_single(&tape->nodes[last])) {
-                tape->stats->limits |= TAPEMARK_LIMIT_LENGTH;
-                *next = last < *next ? last : *next; /* the rest of the row starts there */
-            }
-            return count;
+            rows->last = rows->next;
+            rows->direction = d;
+            chain[0] = turned(&tape->nodes[rows->next].finder, d);
+            return follow(tape, rows, 1, chain);
         }
     return 0;
 }

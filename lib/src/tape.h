@@ -34,8 +34,17 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder);
 /* Links neighbours, then looks for missing ones beyond the ends of what is linked, and around single ones. */
 void tmi_tape_link(tmi_tape *tape);
 
-/* The rows of two or more linked finders, one a call: starts at *next (0 at first) and moves it on. Copies at
- * most TMI_MAX_CHAIN finders, turned so that `right` runs along the row. Returns how many; 0 at the end. */
-int tmi_tape_next_chain(tmi_tape *tape, int *next, tmi_finder chain[TMI_MAX_CHAIN]);
+/* The way through all rows; zeroed at first. */
+typedef struct tmi_rows {
+    int next;       /* no row begins at a finder before this one */
+    bool goes_on;   /* the row is longer than the chain that was filled with it: */
+    int last;       /* its last finder there, */
+    int direction;  /* and where the row leaves it */
+} tmi_rows;
+
+/* The rows of two or more linked finders, one a call. Copies at most TMI_MAX_CHAIN finders, turned so that `right`
+ * runs along the row. Returns how many; 0 at the end. Of a row that goes on, the next call gives what follows, behind
+ * the `kept` finders (of this row, the last one among them) that the chain begins with. */
+int tmi_tape_next_chain(tmi_tape *tape, tmi_rows *rows, int kept, tmi_finder chain[TMI_MAX_CHAIN]);
 
 #endif

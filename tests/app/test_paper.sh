@@ -26,8 +26,8 @@ run 0 --map "$paper/map.json" "$paper/markers/tape_6_11.png"
 [ "$(ids)" = '-6 -7 -8 -9 -10 11 ' ] || fail "tape_6_11.png: $(ids)"
 expect out '"code":"000001","directed":true,'
 expect out '"cms":[-6,-7,-8,-9,-10,11]'
-expect out '"x":1.7566,"y":0.1100}'
-expect out '"x":2.3411,"y":0.1100}'  # the middle of the tape marker
+expect out '"x":1.7566,"y":0.1100,"direction_deg":0.00}'
+expect out '"x":2.3411,"y":0.1100,"direction_deg":0.00,"agrees":true}'  # the middle of the tape marker
 
 run 0 "$paper/markers"
 expect_none out '"markers":[]'

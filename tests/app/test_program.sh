@@ -21,14 +21,14 @@ run 0 --version
 expect_refusal 2 'no INPUT'
 expect_refusal 2 "'--frobnicate'" --frobnicate a.pgm
 expect_refusal 2 "'-x'" -x a.pgm
-expect_refusal 2 '--format is jsonl, csv or text' --format xml a.pgm
+expect_refusal 2 '--format: expected one of jsonl csv text, not "xml"' --format xml a.pgm
 expect_refusal 2 '--raw: unknown pixel format' --raw RGB:4x4 a.raw
 expect_refusal 2 '--raw: expected FORMAT' --raw GREY:4 a.raw
-expect_refusal 2 '--roll needs a number from -360 to 360' --roll north a.pgm
-expect_refusal 2 '--vote-min needs a number' --vote-min 0.5 a.pgm
-expect_refusal 2 '--confidence-min needs a number' --confidence-min nan a.pgm
-expect_refusal 2 '--max-id needs a whole number from 1 to 1505582' --max-id -3 a.pgm
-expect_refusal 2 '--budget needs a whole number' --budget 4294967296 a.pgm
+expect_refusal 2 '--roll: expected a number from -360 to 360' --roll north a.pgm
+expect_refusal 2 '--vote-min: expected a number' --vote-min 0.5 a.pgm
+expect_refusal 2 '--confidence-min: expected a number' --confidence-min nan a.pgm
+expect_refusal 2 '--max-id: expected a whole number from 1 to 1505582' --max-id -3 a.pgm
+expect_refusal 2 '--budget: expected a whole number' --budget 4294967296 a.pgm
 expect_refusal 2 '--map needs a value' --map
 
 # ---- Formats of output ----------------------------------------------------------------------------------------
@@ -52,7 +52,7 @@ grep -q "{\"type\":\"tm\",\"code\":\"100\",\"directed\":true,$corners,\"confiden
 
 run 0 --format csv cm.pgm tm.pgm
 expect_lines out 6
-expect out 'source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,confidence,cms,x,y'
+expect out 'source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,confidence,cms,x,y,direction_deg,agrees,reason'
 [ "$(cut -d , -f 1,2,6-9 out | sed -n '2p;6p' | tr '\n' ' ')" = 'cm.pgm,0,cm,-20,, tm.pgm,0,tm,,100,1 ' ] ||
     fail 'csv rows'
 

@@ -1,6 +1,8 @@
 /* Lines, rows and summaries made of results that are typed in below. */
 #include "test_main.h"
 
+#include "map_table.h"
+#include "marker_place.h"
 #include "report.h"
 #include "summary.h"
 
@@ -231,11 +233,11 @@ static size_t count_fields(const char *row)
 static void csv_has_a_row_a_marker(void **state)
 {
     static const char expected[] =
-        "walk.mp4,7,640,480,812,cm,1505582,,,0.25,1.00,10.25,1.00,10.25,6.00,0.25,6.00,0.500,,,\n"
-        "walk.mp4,7,640,480,812,cm,-20,,,30.00,1.00,40.00,1.00,40.00,6.00,30.00,6.00,1.000,,,\n"
-        "walk.mp4,7,640,480,812,cm,17,,,10.00,1.00,20.00,1.00,20.00,6.00,10.00,6.00,1.000,,,\n"
-        "walk.mp4,7,640,480,812,tm,,1000,1,5.00,1.00,15.00,1.00,15.00,6.00,5.00,6.00,0.900,17 -20,,\n"
-        "walk.mp4,7,640,480,812,tm,,101,0,50.00,1.00,60.00,1.00,60.00,6.00,50.00,6.00,1.000,,,\n";
+        "walk.mp4,7,640,480,812,cm,1505582,,,0.25,1.00,10.25,1.00,10.25,6.00,0.25,6.00,0.500,,,,,,\n"
+        "walk.mp4,7,640,480,812,cm,-20,,,30.00,1.00,40.00,1.00,40.00,6.00,30.00,6.00,1.000,,,,,,\n"
+        "walk.mp4,7,640,480,812,cm,17,,,10.00,1.00,20.00,1.00,20.00,6.00,10.00,6.00,1.000,,,,,,\n"
+        "walk.mp4,7,640,480,812,tm,,1000,1,5.00,1.00,15.00,1.00,15.00,6.00,5.00,6.00,0.900,17 -20,,,,,\n"
+        "walk.mp4,7,640,480,812,tm,,101,0,50.00,1.00,60.00,1.00,60.00,6.00,50.00,6.00,1.000,,,,,,\n";
     text_buffer rows = {0}, header = {0};
     tapemark_result result;
     frame_report report = make_report(&result);
@@ -243,9 +245,9 @@ static void csv_has_a_row_a_marker(void **state)
     report_add_csv(&rows, &report);
     assert_string_equal(rows.text, expected);
     report_add_csv_header(&header);
-    assert_int_equal(count_fields(header.text), 21);
+    assert_int_equal(count_fields(header.text), 24);
     for (const char *row = rows.text; *row != '\0'; row = strchr(row, '\n') + 1)
-        assert_int_equal(count_fields(row), 21);
+        assert_int_equal(count_fields(row), 24);
     text_buffer_release(&rows);
     text_buffer_release(&header);
 }
@@ -278,40 +280,120 @@ static void text_has_a_line_a_marker(void **state)
     text_buffer_release(&lines);
 }
 
-static void places_are_added_where_known(void **state)
+/* The TM of the first result at (1.5 … 4.5, 2), and CM 1505582 alone. */
+static const char table_map[] =
+    "[{\"idcm_decimal\":17,\"x\":4.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
+    "{\"idcm_decimal\":-18,\"x\":3.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
+    "{\"idcm_decimal\":-19,\"x\":2.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
+    "{\"idcm_decimal\":-20,\"x\":1.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
+    "{\"idcm_decimal\":1505582,\"x\":7,\"y\":8}]";
+
+static void load_table(map_table *table)
 {
-    static const char map[] =
-        "[{\"idcm_decimal\":17,\"x\":1.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
-        "{\"idcm_decimal\":-18,\"x\":2.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
-        "{\"idcm_decimal\":-19,\"x\":3.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1},"
-        "{\"idcm_decimal\":-20,\"x\":4.5,\"y\":2,\"idtm\":\"1000\",\"n_tm\":1}]";
-    places known;
     error_text error;
+    assert_true(map_table_load(temporary_file(".json", table_map, sizeof table_map - 1), table, &error));
+    unlink(temporary_file(".json", "", 0));
+}
+
+static void json_has_places_and_agreement(void **state)
+{
+    map_table table;
+    tapemark_result result;
+    frame_report report = make_report(&result);
+    (void)state;
+    load_table(&table);
+    report.map = &table.map;
+    cJSON *object = parse_line(&report);
+    const cJSON *markers = cJSON_GetObjectItem(object, "markers");
+    const cJSON *lone = cJSON_GetArrayItem(markers, 0), *member = cJSON_GetArrayItem(markers, 1);
+    const cJSON *tm = cJSON_GetArrayItem(markers, 3), *unknown = cJSON_GetArrayItem(markers, 4);
+    assert_string_equal(keys_of(lone), "type id corners confidence doubtful corrected x y");
+    assert_true(number_of(lone, "x") == 7 && number_of(lone, "y") == 8);
+    assert_string_equal(keys_of(member), "type id corners confidence doubtful corrected tm slot x y direction_deg");
+    assert_true(number_of(member, "x") == 1.5 && number_of(member, "y") == 2);
+    assert_true(number_of(member, "direction_deg") == 180);
+    assert_string_equal(keys_of(tm), "type code directed corners confidence cms vote x y direction_deg agrees");
+    assert_true(number_of(tm, "x") == 3 && number_of(tm, "direction_deg") == 180);
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(tm, "agrees")));
+    assert_string_equal(keys_of(unknown), "type code directed corners confidence cms vote agrees reason");
+    assert_true(cJSON_IsFalse(cJSON_GetObjectItem(unknown, "agrees")));
+    assert_string_equal(cJSON_GetObjectItem(unknown, "reason")->valuestring, "unknown_code");
+    cJSON_Delete(object);
+    map_table_release(&table);
+}
+
+/* A TM alone in its frame, without CMs or with -20 in some slot. */
+static const cJSON *report_tm(const tapemark_map *map, const char *code, bool directed, int slot)
+{
+    static cJSON *object;
+    tapemark_cm cm = {.id = -20, .tm = 0, .slot = (int16_t)slot};
+    tapemark_tm tm = {.length = (uint8_t)strlen(code), .directed = directed};
+    tapemark_result result = {.cms = &cm, .cm_count = slot >= 0, .tms = &tm, .tm_count = 1};
+    frame_report report = {"a", 0, 1, 1, FRAME_TIME_UNKNOWN, 1, &result, map};
+    memcpy(tm.code, code, strlen(code) + 1);
+    cJSON_Delete(object);
+    object = code[0] != '\0' ? parse_line(&report) : NULL;
+    return cJSON_GetArrayItem(cJSON_GetObjectItem(object, "markers"), slot >= 0);
+}
+
+static void json_tells_why_a_tm_does_not_agree(void **state)
+{
+    map_table table;
+    (void)state;
+    load_table(&table);
+    const cJSON *tm = report_tm(&table.map, "0001", false, -1);
+    assert_string_equal(keys_of(tm), "type code directed corners confidence cms vote x y direction_deg agrees reason "
+                                     "read_backwards");
+    assert_true(cJSON_IsNull(cJSON_GetObjectItem(tm, "agrees")));
+    assert_string_equal(cJSON_GetObjectItem(tm, "reason")->valuestring, "no_cms");
+    tm = report_tm(&table.map, "1000", true, 1);
+    assert_string_equal(keys_of(tm), "type code directed corners confidence cms vote agrees reason");
+    assert_string_equal(cJSON_GetObjectItem(tm, "reason")->valuestring, "other_slot");
+    tm = report_tm(&table.map, "0001", true, 0);
+    assert_string_equal(cJSON_GetObjectItem(tm, "reason")->valuestring, "backwards");
+    tm = report_tm(&table.map, "0001", false, 0);
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(tm, "agrees")));
+    assert_true(cJSON_IsTrue(cJSON_GetObjectItem(tm, "read_backwards")));
+    report_tm(NULL, "", false, -1);
+    map_table_release(&table);
+}
+
+static void csv_and_text_have_places_and_agreement(void **state)
+{
+    map_table table;
     tapemark_result result;
     frame_report report = make_report(&result);
     text_buffer rows = {0}, lines = {0};
     (void)state;
-    assert_true(places_load(temporary_file(".json", map, sizeof map - 1), &known, &error));
-    report.known = &known;
-    cJSON *object = parse_line(&report);
-    const cJSON *markers = cJSON_GetObjectItem(object, "markers");
-    assert_string_equal(keys_of(cJSON_GetArrayItem(markers, 0)), "type id corners confidence doubtful corrected");
-    assert_true(number_of(cJSON_GetArrayItem(markers, 1), "x") == 4.5);
-    assert_true(number_of(cJSON_GetArrayItem(markers, 1), "y") == 2);
-    assert_string_equal(keys_of(cJSON_GetArrayItem(markers, 3)),
-                        "type code directed corners confidence cms vote x y");
-    assert_true(number_of(cJSON_GetArrayItem(markers, 3), "x") == 3);
-    cJSON_Delete(object);
-
+    load_table(&table);
+    report.map = &table.map;
     report_add_csv(&rows, &report);
-    assert_non_null(strstr(rows.text, ",17 -20,3.0000,2.0000\n"));
-    assert_non_null(strstr(rows.text, ",1.000,,1.5000,2.0000\n"));
+    assert_non_null(strstr(rows.text, ",0.500,,7.0000,8.0000,,,\n"));
+    assert_non_null(strstr(rows.text, ",1.000,,1.5000,2.0000,180.00,,\n"));
+    assert_non_null(strstr(rows.text, ",17 -20,3.0000,2.0000,180.00,true,\n"));
+    assert_non_null(strstr(rows.text, ",1.000,,,,,false,unknown_code\n"));
+    for (const char *row = rows.text; *row != '\0'; row = strchr(row, '\n') + 1)
+        assert_int_equal(count_fields(row), 24);
     report_add_text(&lines, &report);
-    assert_non_null(strstr(lines.text, "CMs 17 -20, on the plan at (3.00 m, 2.00 m)\n"));
+    assert_non_null(strstr(lines.text, "CM 1505582 at (5, 4), confidence 0.50, on the plan at (7.00 m, 8.00 m)\n"));
+    assert_non_null(strstr(lines.text, "CMs 17 -20, on the plan at (3.00 m, 2.00 m) reading towards 180 deg, its CMs "
+                                       "agree\n"));
+    assert_non_null(strstr(lines.text, "confidence 1.00, no place: its code is not on the map\n"));
     text_buffer_release(&rows);
     text_buffer_release(&lines);
-    places_release(&known);
-    unlink(temporary_file(".json", "", 0));
+    map_table_release(&table);
+}
+
+static void every_agreement_has_its_words(void **state)
+{
+    (void)state;
+    for (int a = TAPEMARK_AGREES; a <= TAPEMARK_RUNS_BACKWARDS; a++) {
+        assert_true(strlen(agreement_phrase((tapemark_agreement)a)) > 0);
+        for (int b = TAPEMARK_AGREES; b < a; b++) {
+            assert_string_not_equal(agreement_name((tapemark_agreement)a), agreement_name((tapemark_agreement)b));
+            assert_string_not_equal(agreement_phrase((tapemark_agreement)a), agreement_phrase((tapemark_agreement)b));
+        }
+    }
 }
 
 /* ---- Summary ------------------------------------------------------------------------------------------------- */
@@ -368,7 +450,10 @@ int main(void)
         cmocka_unit_test(csv_has_a_row_a_marker),
         cmocka_unit_test(csv_quotes_what_needs_it),
         cmocka_unit_test(text_has_a_line_a_marker),
-        cmocka_unit_test(places_are_added_where_known),
+        cmocka_unit_test(json_has_places_and_agreement),
+        cmocka_unit_test(json_tells_why_a_tm_does_not_agree),
+        cmocka_unit_test(csv_and_text_have_places_and_agreement),
+        cmocka_unit_test(every_agreement_has_its_words),
         cmocka_unit_test(summary_counts_frames_ids_and_times),
         cmocka_unit_test(summary_tells_the_outermost_ids_apart),
     };

@@ -131,6 +131,32 @@ static void segments_without_bars_are_no_tms(void **state)
         assert_int_equal(got->cms[i].tm, -1);
 }
 
+/* As a printed tape hangs: pieces with their quiet zones, four modules between the bars. There are more finders in the
+ * row than one look at it holds. */
+static void reads_a_wall_full_of_tape(void **state)
+{
+    (void)state;
+    enum { PIECES = 7, CMS = 6 };
+    static int32_t ids[PIECES][CMS];
+    static const char codes[PIECES][CMS + 1] = {"100000", "010000", "001000", "110000", "101000", "100100", "100010"};
+    for (int roll_deg = 0; roll_deg < 360; roll_deg += 180) {
+        scene view = scene_default(1960, 240);
+        scene_tape tapes[PIECES];
+        for (int i = 0; i < PIECES; i++)
+            tapes[i] = scene_tape_of(ids[i], ids_for_code(codes[i], 1 + CMS * i, ids[i]), true);
+        scene_place(&view, &tapes[0],
+                    (scene_pose){.px_per_module = 1.5, .dx_px = roll_deg ? 800 : -800, .roll_deg = roll_deg});
+        for (int i = 1; i < PIECES; i++)
+            place_behind(&tapes[i - 1], &tapes[i], 4);
+        view.tapes = tapes;
+        view.tape_count = PIECES;
+        const decoding *got = decode_scene(&view, NULL, "a wall full of tape, roll %d", roll_deg);
+        assert_all_read(got, &view, 0.5);
+        assert_int_equal(got->result.tm_count, PIECES);
+        assert_int_equal(got->result.stats.limits & TAPEMARK_LIMIT_LENGTH, 0);
+    }
+}
+
 static void tapes_are_read_before_clutter(void **state)
 {
     (void)state;
@@ -154,6 +180,7 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_tape_in_the_frame),
         cmocka_unit_test(reads_pieces_side_by_side),
+        cmocka_unit_test(reads_a_wall_full_of_tape),
         cmocka_unit_test(tapes_cut_by_the_border_are_no_wrong_tms),
         cmocka_unit_test(a_covered_cm_is_a_gap_and_no_wrong_id),
         cmocka_unit_test(half_a_tape_is_no_wrong_id),

@@ -4,7 +4,7 @@
 #include <math.h>
 
 #include "finder.h"
-#include "geometry.h"
+#include "elementary.h"
 
 enum { SIDE = 300 };
 
@@ -41,10 +41,11 @@ static void render_pattern(double px_per_module, double roll_deg, double yaw_deg
     view.camera.focal_px = 1e5;
     view.optics.defocus_px = defocus_px;
     scene_tape tape = scene_tape_of(&id, 1, false);
-    const double a = radians(roll_deg), shift = 12.5 * px_per_module * cos(radians(yaw_deg));
+    const direction along = direction_of(roll_deg);
+    const double shift = 12.5 * px_per_module * direction_of(yaw_deg).x;
     scene_place(&view, &tape, (scene_pose){.px_per_module = px_per_module, .roll_deg = roll_deg, .yaw_deg = yaw_deg,
-                                           .pitch_deg = pitch_deg, .dx_px = shift * cos(a) + 0.37,
-                                           .dy_px = shift * sin(a) - 0.21});
+                                           .pitch_deg = pitch_deg, .dx_px = shift * along.x + 0.37,
+                                           .dy_px = shift * along.y - 0.21});
     view.tapes = &tape;
     view.tape_count = 1;
     if (!scene_render(&view, seen.pixels, &truth))
@@ -132,7 +133,7 @@ static void located_when_foreshortened(void **state)
     static const double tilts_deg[] = {-70, -60, -45, 30, 48, 60, 70};
     for (size_t i = 0; i < COUNT_OF(tilts_deg); i++)
         for (double roll_deg = 0; roll_deg <= 90; roll_deg += 22.5) {
-            const double px_per_module = 2.2 / cos(radians(tilts_deg[i]));
+            const double px_per_module = 2.2 / direction_of(tilts_deg[i]).x;
             render_pattern(px_per_module, roll_deg, 0, tilts_deg[i], 0.4);
             assert_located("pitch", tilts_deg[i], 0.15, 0.04);
             render_pattern(px_per_module, roll_deg, tilts_deg[i], 0, 0.4);

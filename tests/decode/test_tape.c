@@ -61,8 +61,8 @@ static float distance(tmi_point a, tmi_point b)
 static void assert_whole_chain(void)
 {
     tmi_finder chain[TMI_MAX_CHAIN];
-    int next = 0;
-    const int count = tmi_tape_next_chain(&set.tape, &next, chain);
+    tmi_rows rows = {0};
+    const int count = tmi_tape_next_chain(&set.tape, &rows, 0, chain);
     assert_int_equal(count, CMS + 1);
     const bool backwards = distance(chain[0].centre, set.finders[0].centre) > 10;
     for (int i = 0; i < count; i++) {
@@ -72,7 +72,7 @@ static void assert_whole_chain(void)
         assert_true(distance(chain[i].right, (tmi_point){sign * f->right.x, sign * f->right.y}) < 0.15f);
         assert_true(distance(chain[i].down, (tmi_point){sign * f->down.x, sign * f->down.y}) < 0.15f);
     }
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 0);
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 0);
 }
 
 static const scene_pose poses[] = {
@@ -144,8 +144,8 @@ static void without_work_left_nothing_is_foretold(void **state)
     assert_int_equal(set.tape.count, 2);
     assert_int_equal(set.stats.limits, TAPEMARK_LIMIT_WORK);
     tmi_finder chain[TMI_MAX_CHAIN];
-    int next = 0;
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 2);
+    tmi_rows rows = {0};
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 2);
 }
 
 /* A finder pattern that is covered ends the row; what lies beyond is a row of its own. */
@@ -161,10 +161,10 @@ static void a_gap_splits_the_row(void **state)
             tmi_tape_add(&set.tape, &set.finders[i]);
     tmi_tape_link(&set.tape);
     tmi_finder chain[TMI_MAX_CHAIN];
-    int next = 0;
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 3);
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 3);
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 0);
+    tmi_rows rows = {0};
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 3);
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 3);
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 0);
 }
 
 static void lone_finders_are_counted(void **state)
@@ -177,8 +177,8 @@ static void lone_finders_are_counted(void **state)
     tmi_tape_link(&set.tape);
     assert_int_equal(set.stats.rejects[TAPEMARK_REJECT_LONE], 2);
     tmi_finder chain[TMI_MAX_CHAIN];
-    int next = 0;
-    assert_int_equal(tmi_tape_next_chain(&set.tape, &next, chain), 0);
+    tmi_rows rows = {0};
+    assert_int_equal(tmi_tape_next_chain(&set.tape, &rows, 0, chain), 0);
 }
 
 static void knows_where_its_finders_are(void **state)

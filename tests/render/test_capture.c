@@ -4,11 +4,13 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
 
 #include "capture.h"
+#include "opencv_media.h"
 
 static const uint16_t four_by_two[8] = {0x3ff, 0x201, 0x102, 0x003, 10, 20, 30, 40};
 static const uint16_t bytes_four_by_two[8] = {1, 2, 3, 4, 250, 6, 7, 8};
@@ -16,18 +18,23 @@ static const uint16_t bytes_four_by_two[8] = {1, 2, 3, 4, 250, 6, 7, 8};
 static uint8_t written[256];
 
 /* What is written for one frame of 4 x 2 pixels, header included; how many bytes. */
-static size_t capture(const char *name, const uint16_t *samples, size_t stride_bytes)
+static size_t capture_at(double fps, const char *name, const uint16_t *samples, size_t stride_bytes)
 {
     const capture_format *format = capture_format_find(name);
     assert_non_null(format);
     FILE *file = tmpfile();
     assert_non_null(file);
-    capture_write_header(file, format, 4, 2);
+    capture_write_header(file, format, 4, 2, fps);
     assert_true(capture_write_frame(file, format, samples, 4, 2, stride_bytes));
     rewind(file);
     size_t size = fread(written, 1, sizeof written, file);
     fclose(file);
     return size;
+}
+
+static size_t capture(const char *name, const uint16_t *samples, size_t stride_bytes)
+{
+    return capture_at(12, name, samples, stride_bytes);
 }
 
 static void assert_written(size_t size, const uint8_t *expected, size_t expected_size)
@@ -43,6 +50,22 @@ static void files_have_their_headers(void **state)
     static const char y4m[] = "YUV4MPEG2 W4 H2 F12:1 Ip A1:1 Cmono\nFRAME\n\1\2\3\4\372\6\7\10";
     assert_written(capture("pgm", bytes_four_by_two, 4), (const uint8_t *)pgm, sizeof pgm - 1);
     assert_written(capture("y4m", bytes_four_by_two, 4), (const uint8_t *)y4m, sizeof y4m - 1);
+    static const char ntsc[] = "YUV4MPEG2 W4 H2 F29970:1000 Ip A1:1 Cmono\nFRAME\n\1\2\3\4\372\6\7\10";
+    assert_written(capture_at(29.97, "y4m", bytes_four_by_two, 4), (const uint8_t *)ntsc, sizeof ntsc - 1);
+}
+
+static void a_png_comes_back_as_it_was(void **state)
+{
+    (void)state;
+    gray_picture picture;
+    error_text error;
+    size_t size = capture("png", bytes_four_by_two, 4);
+    assert_true(opencv_decode_still(written, size, &picture, &error));
+    assert_int_equal(picture.width_px, 4);
+    assert_int_equal(picture.height_px, 2);
+    for (size_t i = 0; i < 8; i++)
+        assert_int_equal(picture.pixels[i], bytes_four_by_two[i]);
+    free(picture.pixels);
 }
 
 static void rows_are_as_long_as_the_stride(void **state)
@@ -100,7 +123,7 @@ static void every_named_format_is_known_and_no_other(void **state)
     strcpy(names, capture_format_names());
     for (char *name = strtok(names, " "); name != NULL; name = strtok(NULL, " "), count++)
         assert_string_equal(capture_format_find(name)->name, name);
-    assert_int_equal(count, 12);
+    assert_int_equal(count, 13);
     assert_null(capture_format_find("Y10PP"));
     assert_null(capture_format_find("Y1"));
     assert_null(capture_format_find(""));
@@ -128,6 +151,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(files_have_their_headers),
+        cmocka_unit_test(a_png_comes_back_as_it_was),
         cmocka_unit_test(rows_are_as_long_as_the_stride),
         cmocka_unit_test(ten_bits_lie_in_two_bytes_or_packed_in_five),
         cmocka_unit_test(luma_is_first_or_second_in_its_pair),

@@ -109,6 +109,43 @@ static void the_same_seed_gives_the_same_picture_and_another_does_not(void **sta
     assert_true(difference_of(pixels, other) > 5);
 }
 
+/* Whatever rounds: geometry, panels, texels, noise, blur, gamma, compression. The sum was made on x86-64. */
+static void the_same_scene_gives_the_same_picture_on_every_machine(void **state)
+{
+    (void)state;
+    static const uint8_t texels[] = {250, 20, 90, 30, 200, 10};
+    const scene_line line = {-2, -1.6, 2, -1.6};
+    scene_panel panels[2 + SCENE_FURNISHING_MAX] = {scene_floor(-2, -2, 4, 4, 0), scene_wall(line, 2.4)};
+    panels[0].look = SCENE_LOOK_WOOD;
+    panels[0].scale_m = 0.1;
+    scene view = scene_default(WIDTH_PX, HEIGHT_PX);
+    view.panels = panels;
+    view.panel_count = 2 + scene_furnish(line, 2.4, 11, panels + 2, SCENE_FURNISHING_MAX);
+    scene_tape tape = scene_tape_of(ids, 3, true);
+    scene_tape_on_wall(&tape, line, 1.3, 0.3);
+    view.tapes = &tape;
+    view.tape_count = 1;
+    scene_picture picture = scene_picture_of(texels, 3, 2, 0.3);
+    scene_picture_on_wall(&picture, line, 2.6, 1);
+    view.pictures = &picture;
+    view.picture_count = 1;
+    view.camera = scene_plan_camera(200, scene_plan_point(0.3, 0.7, 0.8), -97, -7.3, 3.1);
+    view.move.yaw_deg = 0.4;
+    view.light = (scene_light){.gradient = 0.2, .gradient_deg = 37, .vignetting = 0.3};
+    view.optics = (scene_optics){.defocus_px = 0.7, .motion_px = 1.3, .motion_deg = 21, .disc_px = 1.1};
+    view.sensor.gamma = 2.2;
+    view.sensor.bloom = 0.1;
+    view.sensor.bloom_px = 2;
+    view.sensor.pixel_noise = 0.5;
+    view.sensor.jpeg_quality = 90;
+    render(&view, pixels);
+    assert_true(truth.cm_count > 0 && truth.picture_count == 1);
+    uint32_t sum = 2166136261u;
+    for (size_t i = 0; i < PIXELS; i++)
+        sum = (sum ^ pixels[i]) * 16777619u;
+    assert_int_equal(sum, 0xede6f520u);
+}
+
 static void defocus_widens_an_edge_and_keeps_its_place_and_the_light(void **state)
 {
     (void)state;
@@ -337,7 +374,7 @@ static void a_room_has_a_wall_above_a_floor(void **state)
 static void what_cannot_be_rendered_is_named(void **state)
 {
     (void)state;
-    enum { BAD = 14 };
+    enum { BAD = 13 };
     static const int32_t bad_id[] = {TAPEMARK_MAX_ID + 1};
     scene good = scene_with_tape(scene_default(WIDTH_PX, HEIGHT_PX));
     scene bad[BAD];
@@ -361,13 +398,8 @@ static void what_cannot_be_rendered_is_named(void **state)
     bad[11].tapes = &sizeless;
 
     static int32_t many_ids[SCENE_CMS_MAX + 1];
-    static scene_tape many_tapes[SCENE_TAPES_MAX + 1];
-    for (size_t i = 0; i < SCENE_TAPES_MAX + 1; i++)
-        many_tapes[i] = scene_tape_of(ids, 1, false);
     scene_tape long_tape = scene_tape_of(many_ids, SCENE_CMS_MAX + 1, false);
     bad[12].tapes = &long_tape;
-    bad[13].tapes = many_tapes;
-    bad[13].tape_count = SCENE_TAPES_MAX + 1;
 
     assert_null(scene_problem(&good));
     long_tape.cm_count = SCENE_CMS_MAX;
@@ -386,6 +418,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_same_seed_gives_the_same_picture_and_another_does_not),
+        cmocka_unit_test(the_same_scene_gives_the_same_picture_on_every_machine),
         cmocka_unit_test(defocus_widens_an_edge_and_keeps_its_place_and_the_light),
         cmocka_unit_test(motion_widens_an_edge_only_along_itself),
         cmocka_unit_test(exposure_scales_and_clips),

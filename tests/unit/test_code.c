@@ -294,11 +294,11 @@ static void every_status_has_its_own_text(void **state)
     (void)state;
     const char *unlisted = tapemark_status_text((tapemark_status)99);
     assert_non_null(unlisted);
-    for (int a = TAPEMARK_BAD_WORKSPACE; a <= TAPEMARK_UNFINISHED; a++) {
+    for (int a = TAPEMARK_BAD_MAP; a <= TAPEMARK_AMBIGUOUS; a++) {
         const char *text = tapemark_status_text((tapemark_status)a);
         assert_true(strlen(text) > 0);
         assert_string_not_equal(text, unlisted);
-        for (int b = TAPEMARK_BAD_WORKSPACE; b < a; b++)
+        for (int b = TAPEMARK_BAD_MAP; b < a; b++)
             assert_string_not_equal(text, tapemark_status_text((tapemark_status)b));
     }
 }

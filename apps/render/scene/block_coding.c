@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 enum { SIDE = 8 };
 
 typedef struct block {
@@ -36,7 +38,7 @@ static block dct_basis(void)
     for (int k = 0; k < SIDE; k++) {
         for (int x = 0; x < SIDE; x++) {
             double scale = k == 0 ? sqrt(0.125) : 0.5;
-            basis.at[k][x] = (float)(scale * cos((2 * x + 1) * k * (3.14159265358979323846 / 16)));
+            basis.at[k][x] = (float)(scale * direction_of((2 * x + 1) * k * (180.0 / 16)).x);
         }
     }
     return basis;

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elementary.h"
+
 bool canvas_create(canvas *picture, int32_t width_px, int32_t height_px)
 {
     picture->width_px = width_px;
@@ -23,40 +25,73 @@ static int32_t limited(int32_t value, int32_t least, int32_t most)
     return value < least ? least : value > most ? most : value;
 }
 
-/* sum[x] += weight * row[x + dx] */
-static void add_shifted(float *sum, const float *row, int32_t width_px, int32_t dx_px, float weight)
+/* The picture with its border's pixels going on to both sides, and a little more to the right for whole blocks. */
+enum { BLOCK_PX = 16 };
+
+static bool canvas_widen(const canvas *picture, int32_t by_px, canvas *wide)
 {
-    int32_t from = limited(-dx_px, 0, width_px), to = limited(width_px - dx_px, from, width_px);
-    for (int32_t x = 0; x < from; x++)
-        sum[x] += weight * row[0];
-    for (int32_t x = from; x < to; x++)
-        sum[x] += weight * row[x + dx_px];
-    for (int32_t x = to; x < width_px; x++)
-        sum[x] += weight * row[width_px - 1];
+    if (!canvas_create(wide, picture->width_px + 2 * by_px + BLOCK_PX, picture->height_px))
+        return false;
+    for (int32_t y = 0; y < picture->height_px; y++) {
+        const float *from = canvas_row(picture, y);
+        float *to = canvas_row(wide, y);
+        for (int32_t x = 0; x < by_px; x++)
+            to[x] = from[0];
+        memcpy(to + by_px, from, (size_t)picture->width_px * sizeof *to);
+        for (int32_t x = by_px + picture->width_px; x < wide->width_px; x++)
+            to[x] = from[picture->width_px - 1];
+    }
+    return true;
+}
+
+static void sum_block(const float *const *rows, const canvas_tap *taps, size_t tap_count, int32_t left,
+                      float sums[BLOCK_PX])
+{
+    for (int k = 0; k < BLOCK_PX; k++)
+        sums[k] = 0;
+    for (size_t i = 0; i < tap_count; i++) {
+        const float *from = rows[i] + left;
+        const float weight = taps[i].weight;
+        for (int k = 0; k < BLOCK_PX; k++)
+            sums[k] += weight * from[k];
+    }
+}
+
+static void convolve_rows(const canvas *wide, int32_t reach_px, const canvas_tap *taps, size_t tap_count,
+                          const float **rows, canvas *picture)
+{
+    for (int32_t y = 0; y < picture->height_px; y++) {
+        float *to = canvas_row(picture, y);
+        for (size_t i = 0; i < tap_count; i++)
+            rows[i] = canvas_row(wide, limited(y + taps[i].dy_px, 0, picture->height_px - 1)) + reach_px +
+                      taps[i].dx_px;
+        for (int32_t x = 0; x < picture->width_px; x += BLOCK_PX) {
+            float sums[BLOCK_PX];
+            sum_block(rows, taps, tap_count, x, sums);
+            memcpy(to + x, sums, (size_t)limited(picture->width_px - x, 0, BLOCK_PX) * sizeof *sums);
+        }
+    }
 }
 
 bool canvas_convolve(canvas *picture, const canvas_tap *taps, size_t tap_count)
 {
-    canvas sums;
-    if (!canvas_create(&sums, picture->width_px, picture->height_px))
-        return false;
-    for (int32_t y = 0; y < picture->height_px; y++) {
-        for (size_t i = 0; i < tap_count; i++) {
-            int32_t from_y = limited(y + taps[i].dy_px, 0, picture->height_px - 1);
-            add_shifted(canvas_row(&sums, y), canvas_row(picture, from_y), picture->width_px, taps[i].dx_px,
-                        taps[i].weight);
-        }
-    }
-    canvas_release(picture);
-    *picture = sums;
-    return true;
+    int32_t reach_px = 0;
+    for (size_t i = 0; i < tap_count; i++)
+        reach_px = limited(abs(taps[i].dx_px), reach_px, INT32_MAX);
+    canvas wide;
+    const float **rows = malloc((tap_count + 1) * sizeof *rows);
+    bool done = canvas_widen(picture, reach_px, &wide) && rows != NULL;
+    if (done)
+        convolve_rows(&wide, reach_px, taps, tap_count, rows, picture);
+    canvas_release(&wide);
+    free(rows);
+    return done;
 }
 
 /* Share of a Gaussian that falls on the pixel `distance` away. */
 static double gaussian_share(double distance_px, double sigma_px)
 {
-    double scale = 1 / (sigma_px * sqrt(2));
-    return 0.5 * (erf((distance_px + 0.5) * scale) - erf((distance_px - 0.5) * scale));
+    return normal_share_below((distance_px + 0.5) / sigma_px) - normal_share_below((distance_px - 0.5) / sigma_px);
 }
 
 bool canvas_blur(canvas *picture, double sigma_px)

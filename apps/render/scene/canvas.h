@@ -21,6 +21,11 @@ static inline float *canvas_row(const canvas *picture, int32_t y)
     return picture->at + (size_t)y * (size_t)picture->width_px;
 }
 
+static inline size_t canvas_size(const canvas *picture)
+{
+    return (size_t)picture->width_px * (size_t)picture->height_px;
+}
+
 /* Each pixel becomes a weighted sum of those around it; beyond the border, the border's pixels go on. */
 typedef struct canvas_tap {
     int32_t dx_px, dy_px;

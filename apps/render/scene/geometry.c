@@ -2,43 +2,34 @@
 
 #include <math.h>
 
+#include "elementary.h"
+
 /* Nearer than this counts as behind the camera; in metres times focal lengths, far below any real depth. */
 static const double least_depth = 1e-6;
 
-/* Of a tape to be seen; the area of a module in the image times the third power of its depth. */
+/* Of a plane to be seen; the area of a square unit in the image times the third power of its depth. */
 static const double least_determinant = 1e-12;
 
-double radians(double degrees)
-{
-    return degrees * (3.14159265358979323846 / 180);
-}
-
-static scene_vector blend(double a, scene_vector u, double b, scene_vector v)
+scene_vector blend(double a, scene_vector u, double b, scene_vector v)
 {
     return (scene_vector){a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
 }
 
 matrix camera_axes(const scene_camera *camera)
 {
-    double yaw = radians(camera->yaw_deg), pitch = radians(camera->pitch_deg), roll = radians(camera->roll_deg);
-    scene_vector right = {cos(yaw), 0, -sin(yaw)};
-    scene_vector ahead = {sin(yaw), 0, cos(yaw)};
+    const direction yaw = direction_of(camera->yaw_deg), pitch = direction_of(camera->pitch_deg);
+    const direction roll = direction_of(camera->roll_deg);
+    scene_vector right = {yaw.x, 0, -yaw.y};
+    scene_vector ahead = {yaw.y, 0, yaw.x};
     scene_vector down = {0, 1, 0};
 
-    scene_vector pitched_ahead = blend(cos(pitch), ahead, -sin(pitch), down);
-    scene_vector pitched_down = blend(cos(pitch), down, sin(pitch), ahead);
-    scene_vector rolled_right = blend(cos(roll), right, sin(roll), pitched_down);
-    scene_vector rolled_down = blend(cos(roll), pitched_down, -sin(roll), right);
+    scene_vector pitched_ahead = blend(pitch.x, ahead, -pitch.y, down);
+    scene_vector pitched_down = blend(pitch.x, down, pitch.y, ahead);
+    scene_vector rolled_right = blend(roll.x, right, roll.y, pitched_down);
+    scene_vector rolled_down = blend(roll.x, pitched_down, -roll.y, right);
     return (matrix){{{rolled_right.x, rolled_right.y, rolled_right.z},
                      {rolled_down.x, rolled_down.y, rolled_down.z},
                      {pitched_ahead.x, pitched_ahead.y, pitched_ahead.z}}};
-}
-
-scene_vector matrix_times(const matrix *m, scene_vector v)
-{
-    return (scene_vector){m->at[0][0] * v.x + m->at[0][1] * v.y + m->at[0][2] * v.z,
-                          m->at[1][0] * v.x + m->at[1][1] * v.y + m->at[1][2] * v.z,
-                          m->at[2][0] * v.x + m->at[2][1] * v.y + m->at[2][2] * v.z};
 }
 
 scene_vector transposed_times(const matrix *m, scene_vector v)
@@ -55,31 +46,54 @@ static double cofactor(const matrix *m, int i, int j)
     return m->at[r][c] * m->at[s][d] - m->at[r][d] * m->at[s][c];
 }
 
-bool image_to_tape(const matrix *to_image, matrix *to_tape)
+bool image_to_plane(const matrix *to_image, bool from_behind, matrix *to_plane)
 {
     double determinant = 0;
     for (int j = 0; j < 3; j++)
         determinant += to_image->at[0][j] * cofactor(to_image, 0, j);
-    if (determinant < least_determinant)
+    if ((from_behind ? fabs(determinant) : determinant) < least_determinant)
         return false;
 
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++)
-            to_tape->at[j][i] = cofactor(to_image, i, j) / determinant;
+            to_plane->at[j][i] = cofactor(to_image, i, j) / determinant;
     }
     return true;
 }
 
-matrix tape_to_image(const scene *view, const scene_tape *tape)
+plane plane_of_panel(const scene_panel *panel)
+{
+    return (plane){panel->origin_m, panel->along, panel->down, 1};
+}
+
+plane plane_of_tape(const scene_tape *tape)
+{
+    return (plane){tape->origin_m, tape->along, tape->down, tape->module_m};
+}
+
+plane plane_of_picture(const scene_picture *picture)
+{
+    return (plane){picture->origin_m, picture->along, picture->down, 1};
+}
+
+double camera_distance_m(const scene *view, const plane *from)
+{
+    const scene_vector u = from->along, v = from->down;
+    const scene_vector normal = {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+    const scene_vector to = blend(1, from->origin_m, -1, view->camera.position_m);
+    return fabs(normal.x * to.x + normal.y * to.y + normal.z * to.z);
+}
+
+matrix plane_to_image(const scene *view, const plane *from)
 {
     const scene_camera *camera = &view->camera;
     matrix axes = camera_axes(camera);
-    scene_vector columns[3] = {matrix_times(&axes, tape->along), matrix_times(&axes, tape->down),
-                               matrix_times(&axes, blend(1, tape->origin_m, -1, camera->position_m))};
+    scene_vector columns[3] = {matrix_times(&axes, from->along), matrix_times(&axes, from->down),
+                               matrix_times(&axes, blend(1, from->origin_m, -1, camera->position_m))};
     double centre_x = (view->width_px - 1) / 2.0, centre_y = (view->height_px - 1) / 2.0;
     matrix to_image;
     for (int j = 0; j < 3; j++) {
-        double unit = j < 2 ? tape->module_m : 1;
+        double unit = j < 2 ? from->unit_m : 1;
         to_image.at[0][j] = unit * (camera->focal_px * columns[j].x + centre_x * columns[j].z);
         to_image.at[1][j] = unit * (camera->focal_px * columns[j].y + centre_y * columns[j].z);
         to_image.at[2][j] = unit * columns[j].z;
@@ -155,6 +169,6 @@ local_scale scale_at(const matrix *to_image, double along, double across)
     double d = (to_image->at[1][1] - y * to_image->at[2][1]) / p.z;
 
     /* Singular values of [a b; c d] from their sum and their difference. */
-    double sum = hypot(a + d, c - b), difference = hypot(a - d, c + b);
-    return (local_scale){hypot(a, c), hypot(b, d), fabs(sum - difference) / 2};
+    double sum = length_2d(a + d, c - b), difference = length_2d(a - d, c + b);
+    return (local_scale){length_2d(a, c), length_2d(b, d), fabs(sum - difference) / 2};
 }

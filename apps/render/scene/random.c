@@ -20,13 +20,22 @@ double random_unit(random_source *source)
 }
 
 /* The sum of four even numbers: near enough to normal for noise, and much cheaper than a logarithm a pixel. */
-float random_normal(random_source *source)
+static float normal_of(uint64_t bits)
 {
-    uint64_t bits = random_bits(source);
     int32_t sum = (int32_t)(bits & 0xffff) + (int32_t)(bits >> 16 & 0xffff) + (int32_t)(bits >> 32 & 0xffff) +
                   (int32_t)(bits >> 48);
     const float root_3_by_65536 = 2.6428964e-5f;
     return ((float)sum - 131070.0f) * root_3_by_65536;
+}
+
+float random_normal(random_source *source)
+{
+    return normal_of(random_bits(source));
+}
+
+float random_normal_at(uint64_t seed, int64_t x, int64_t y)
+{
+    return normal_of(random_at(seed, x, y));
 }
 
 uint64_t random_at(uint64_t seed, int64_t x, int64_t y)

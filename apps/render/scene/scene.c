@@ -1,14 +1,13 @@
 #include "scene.h"
 
-#include <math.h>
 #include <stdlib.h>
 
-#include "background.h"
 #include "block_coding.h"
 #include "cover.h"
-#include "degrade.h"
-#include "geometry.h"
-#include "tape_paint.h"
+#include "exposure.h"
+#include "light.h"
+#include "optics.h"
+#include "sensor.h"
 #include "truth.h"
 
 /* ---- Making scenes ------------------------------------------------------------------------------------- */
@@ -49,115 +48,12 @@ scene_tape scene_tape_of(const int32_t *ids, size_t cm_count, bool bars)
     };
 }
 
-static scene_vector plus(scene_vector a, scene_vector b, double times)
-{
-    return (scene_vector){a.x + times * b.x, a.y + times * b.y, a.z + times * b.z};
-}
-
-/* The tape's own directions, seen from the camera. */
-static scene_vector turned(scene_vector v, const scene_pose *pose)
-{
-    double yaw = radians(pose->yaw_deg), pitch = radians(pose->pitch_deg), roll = radians(pose->roll_deg);
-    scene_vector yawed = {cos(yaw) * v.x - sin(yaw) * v.z, v.y, sin(yaw) * v.x + cos(yaw) * v.z};
-    scene_vector pitched = {yawed.x, cos(pitch) * yawed.y - sin(pitch) * yawed.z,
-                            sin(pitch) * yawed.y + cos(pitch) * yawed.z};
-    return (scene_vector){cos(roll) * pitched.x - sin(roll) * pitched.y,
-                          sin(roll) * pitched.x + cos(roll) * pitched.y, pitched.z};
-}
-
-void scene_place(const scene *view, scene_tape *tape, scene_pose pose)
-{
-    matrix axes = camera_axes(&view->camera);
-    double depth_m = view->camera.focal_px * tape->module_m / pose.px_per_module;
-    scene_vector centre = {pose.dx_px / view->camera.focal_px * depth_m, pose.dy_px / view->camera.focal_px * depth_m,
-                           depth_m};
-    double width = (double)tapemark_segment_width_modules(tape->cm_count, tape->bars);
-
-    tape->along = transposed_times(&axes, turned((scene_vector){1, 0, 0}, &pose));
-    tape->down = transposed_times(&axes, turned((scene_vector){0, 1, 0}, &pose));
-    tape->origin_m = plus(view->camera.position_m, transposed_times(&axes, centre), 1);
-    tape->origin_m = plus(tape->origin_m, tape->along, -width / 2 * tape->module_m);
-    tape->origin_m = plus(tape->origin_m, tape->down, -TAPEMARK_HEIGHT_MODULES / 2.0 * tape->module_m);
-}
-
-/* ---- Checking them ------------------------------------------------------------------------------------- */
-
-static bool within(double value, double least, double most)
-{
-    return value >= least && value <= most;
-}
-
-static const char *tape_problem(const scene_tape *tape)
-{
-    tapemark_word word;
-    if (tape->ids == NULL || tape->cm_count == 0)
-        return "a tape has no ids";
-    for (size_t i = 0; i < tape->cm_count; i++) {
-        if (tapemark_word_from_id(tape->ids[i], &word) != TAPEMARK_OK)
-            return "an id is out of range, -1505582 to 1505582";
-    }
-    if (!within(tape->light, 0, 255) || !within(tape->dark, 0, 255))
-        return "a tape's shade is out of range, 0 to 255";
-    return within(tape->module_m, 1e-6, 1e3) ? NULL : "a tape's module has no size";
-}
-
-static const char *tapes_problem(const scene *view)
-{
-    size_t cm_count = 0;
-    if (view->tape_count > SCENE_TAPES_MAX)
-        return "there are more than 64 tapes";
-    for (size_t i = 0; i < view->tape_count; i++) {
-        const char *problem = tape_problem(&view->tapes[i]);
-        if (problem != NULL)
-            return problem;
-        cm_count += view->tapes[i].cm_count;
-    }
-    return cm_count <= SCENE_CMS_MAX ? NULL : "there are more than 256 CMs";
-}
-
-const char *scene_problem(const scene *view)
-{
-    if (!within(view->width_px, 1, SCENE_SIDE_MAX_PX) || !within(view->height_px, 1, SCENE_SIDE_MAX_PX))
-        return "a side of the image is out of range, 1 to 8192 px";
-    if (!within(view->camera.focal_px, 1, 1e6))
-        return "the focal length is out of range, 1 to 1000000 px";
-    if (!within(view->background.kind, 0, SCENE_CLUTTER_COUNT - 1) || !within(view->background.scale_px, 0.1, 1e4))
-        return "the background is unknown or its scale is out of range, 0.1 to 10000 px";
-    if (!within(view->optics.defocus_px, 0, 70))
-        return "the defocus is out of range, 0 to 70 px";
-    if (!within(view->optics.motion_px, 0, 120))
-        return "the motion is out of range, 0 to 120 px";
-    if (!within(view->sensor.exposure, 0, 1e3) || !within(view->sensor.gamma, 0.1, 10))
-        return "the exposure is out of range, 0 to 1000, or gamma is, 0.1 to 10";
-    if (!within(view->sensor.read_noise, 0, 255) || !within(view->sensor.shot_noise, 0, 255))
-        return "the noise is out of range, 0 to 255";
-    if (!within(view->sensor.jpeg_quality, 0, 100))
-        return "the JPEG quality is out of range, 1 to 100, or 0 for none";
-    return tapes_problem(view);
-}
-
 /* ---- Rendering ----------------------------------------------------------------------------------------- */
-
-static void shades_to_light(double gamma, canvas *picture)
-{
-    if (gamma == 1)
-        return;
-    for (size_t i = 0; i < (size_t)picture->width_px * (size_t)picture->height_px; i++)
-        picture->at[i] = (float)light_of_shade((double)picture->at[i], gamma);
-}
 
 static bool paint_scene(const scene *view, canvas *picture)
 {
-    double gamma = view->sensor.gamma;
-    if (!paint_background(view, picture))
+    if (!paint_exposure(view, picture))
         return false;
-    shades_to_light(gamma, picture);
-    for (size_t i = 0; i < view->tape_count; i++) {
-        const scene_tape *tape = &view->tapes[i];
-        float light = (float)light_of_shade(tape->light, gamma), dark = (float)light_of_shade(tape->dark, gamma);
-        if (!paint_tape(view, tape, light, dark, picture))
-            return false;
-    }
     paint_covers(view, picture);
     apply_light(&view->light, picture);
     return apply_optics(&view->optics, picture);
@@ -168,12 +64,9 @@ bool scene_render_samples(const scene *view, unsigned bits, uint16_t *samples, s
     canvas picture;
     if (scene_problem(view) != NULL || bits < 8 || bits > 16)
         return false;
-    bool done = canvas_create(&picture, view->width_px, view->height_px) && paint_scene(view, &picture);
-    if (done) {
-        apply_sensor(&view->sensor, view->seed, bits, &picture, samples);
-        if (truth != NULL)
-            find_truth(view, truth);
-    }
+    bool done = canvas_create(&picture, view->width_px, view->height_px) && paint_scene(view, &picture) &&
+                (truth == NULL || find_truth(view, truth)) &&
+                apply_sensor(&view->sensor, view->seed, bits, &picture, samples);
     canvas_release(&picture);
     return done;
 }

@@ -2,38 +2,12 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "geometry.h"
+#include "lattice.h"
 
-enum { QUIET_ROWS = 1, CELL_NONE = 2 };
+enum { CELL_NONE = 2 };
 
-/* The printed tape as cells: 1 dark, 0 light, quiet zone included. */
-typedef struct texture {
-    uint8_t *cells;
-    int32_t columns, rows;
-    int32_t quiet_columns;
-} texture;
-
-static bool texture_of(const scene_tape *tape, texture *print)
-{
-    size_t width = tapemark_segment_width_modules(tape->cm_count, tape->bars);
-    int32_t quiet = tape->bars ? 2 : 1;
-    *print = (texture){NULL, (int32_t)width + 2 * quiet, TAPEMARK_HEIGHT_MODULES + 2 * QUIET_ROWS, quiet};
-
-    size_t columns = (size_t)print->columns;
-    uint8_t *modules = malloc(width * TAPEMARK_HEIGHT_MODULES);
-    print->cells = calloc(columns * (size_t)print->rows, 1);
-    bool done = modules != NULL && print->cells != NULL &&
-                tapemark_segment_draw(tape->ids, tape->cm_count, tape->bars, modules,
-                                      width * TAPEMARK_HEIGHT_MODULES) == TAPEMARK_OK;
-    for (size_t y = 0; done && y < TAPEMARK_HEIGHT_MODULES; y++)
-        memcpy(print->cells + (y + QUIET_ROWS) * columns + quiet, modules + y * width, width);
-    free(modules);
-    return done;
-}
-
-/* A cell of the texture, or of the endless plane around it: that begins one cell further out on all sides and is
+/* A cell of the print, or of the endless plane around it: that begins one cell further out on all sides and is
  * not told apart there. */
 typedef struct place {
     double along, across;  /* in cells */
@@ -42,51 +16,50 @@ typedef struct place {
 
 static int32_t cell_index(double coordinate, int32_t count)
 {
-    return (int32_t)floor(fmin(fmax(coordinate, -1), count));
+    return coordinate < count ? coordinate > -1 ? (int32_t)floor(coordinate) : -1 : count;
 }
 
-static place place_of(const matrix *to_tape, const texture *print, double x_px, double y_px)
+static place place_of(const matrix *to_tape, const tape_print *print, double x_px, double y_px)
 {
     scene_vector p = matrix_times(to_tape, (scene_vector){x_px, y_px, 1});
     place here = {-1, -1, -1, -1};
     if (p.z > 0) {
-        here.along = p.x / p.z + print->quiet_columns;
-        here.across = p.y / p.z + QUIET_ROWS;
+        double depth_m = 1 / p.z;
+        here.along = p.x * depth_m + print->quiet_columns;
+        here.across = p.y * depth_m + print->quiet_rows;
         here.column = cell_index(here.along, print->columns);
         here.row = cell_index(here.across, print->rows);
     }
     return here;
 }
 
-static int cell_at(const texture *print, const place *here)
+static int cell_at(const tape_print *print, const place *here)
 {
     if (here->column < 0 || here->column >= print->columns || here->row < 0 || here->row >= print->rows)
         return CELL_NONE;
     return print->cells[here->row * print->columns + here->column];
 }
 
-/* Points spread evenly over a pixel, all different in x and in y: an edge that lies along the pixels shifts by
- * 1 / count px at a time. Fibonacci numbers make the lattice (n, m) with the points (i / n, frac(i m / n)). */
-static void count_samples(const matrix *to_tape, const texture *print, double x_px, double y_px, bool small_cells,
-                          int counts[3])
+static void count_samples(const matrix *to_tape, const tape_print *print, const lattice *points, double x_px,
+                          double y_px, int counts[3])
 {
-    const int count = small_cells ? 89 : 34, multiplier = small_cells ? 55 : 21;
-    for (int i = 0; i < count; i++) {
-        double dx = (i + 0.5) / count - 0.5, dy = ((i * multiplier) % count + 0.5) / count - 0.5;
-        place here = place_of(to_tape, print, x_px + dx, y_px + dy);
+    for (int i = 0; i < points->count; i++) {
+        place here = place_of(to_tape, print, x_px + points->dx_px[i], y_px + points->dy_px[i]);
         counts[cell_at(print, &here)]++;
     }
 }
 
-/* The two lines of pixel corners above and below a row of pixels. */
+/* The two lines of pixel corners above and below a row of pixels; the first corner is that of the box. */
 typedef struct corner_lines {
     place *above, *below;
 } corner_lines;
 
-static void fill_line(const matrix *to_tape, const texture *print, const pixel_box *box, double y_px, place *line)
+/* The line between two rows, for the pixels that the tape reaches in either. */
+static void fill_line(const thing *tape, const tape_print *print, int32_t upper_row, place *line)
 {
-    for (int32_t x = box->left; x <= box->right; x++)
-        line[x - box->left] = place_of(to_tape, print, x - 0.5, y_px);
+    const pixel_span span = span_in_rows(tape, upper_row);
+    for (int32_t x = span.left; x <= span.right; x++)
+        line[x - tape->box.left] = place_of(&tape->to_plane, print, x - 0.5, upper_row + 0.5);
 }
 
 static bool same_cell(const place *a, const place *b)
@@ -94,8 +67,8 @@ static bool same_cell(const place *a, const place *b)
     return a->column == b->column && a->row == b->row;
 }
 
-/* Whether all four corners lie beyond the same side of the texture; the whole pixel does so then. */
-static bool all_beside(const place *const corners[4], const texture *print)
+/* Whether all four corners lie beyond the same side of the print; the whole pixel does so then. */
+static bool all_beside(const place *const corners[4], const tape_print *print)
 {
     int beyond[4] = {0};
     for (int i = 0; i < 4; i++) {
@@ -113,37 +86,54 @@ static double extent(double a, double b, double c, double d)
 }
 
 typedef struct brush {
-    const matrix *to_tape;
-    const texture *print;
-    float shades[2];
+    world *seen;
+    const thing *tape;
+    int32_t tape_index;
+    const tape_print *print;
+    lattice coarse, fine;
 } brush;
 
-static void paint_pixel(const brush *with, const place *const corners[4], int32_t x, int32_t y, float *pixel)
+/* Of a pixel that the tape reaches: how many points of it show which cells. */
+static void count_cells(const brush *with, const place *const corners[4], int32_t x, int32_t y, int counts[3])
 {
-    if (all_beside(corners, with->print))
-        return;
+    counts[0] = counts[1] = counts[CELL_NONE] = 0;
     if (same_cell(corners[0], corners[1]) && same_cell(corners[0], corners[2]) && same_cell(corners[0], corners[3])) {
-        *pixel = with->shades[cell_at(with->print, corners[0])];
+        counts[cell_at(with->print, corners[0])] = 1;
         return;
     }
     bool small_cells =
         extent(corners[0]->along, corners[1]->along, corners[2]->along, corners[3]->along) > 0.8 ||
         extent(corners[0]->across, corners[1]->across, corners[2]->across, corners[3]->across) > 0.8;
-    int counts[3] = {0};
-    count_samples(with->to_tape, with->print, x, y, small_cells, counts);
-    *pixel = ((float)counts[0] * with->shades[0] + (float)counts[1] * with->shades[1] +
+    count_samples(&with->tape->to_plane, with->print, small_cells ? &with->fine : &with->coarse, x, y, counts);
+}
+
+static void paint_pixel(const brush *with, const place *const corners[4], int32_t x, int32_t y, float *pixel)
+{
+    if (all_beside(corners, with->print) || is_hidden(with->seen, with->tape, x, y))
+        return;
+    int counts[3];
+    count_cells(with, corners, x, y, counts);
+    if (counts[0] + counts[1] == 0 || !may_paint(with->seen, with->tape_index, counts[CELL_NONE] > 0, x, y))
+        return;
+    if (counts[0] + counts[1] + counts[CELL_NONE] == 1) {
+        *pixel = with->print->shades[counts[1]];
+        return;
+    }
+    *pixel = ((float)counts[0] * with->print->shades[0] + (float)counts[1] * with->print->shades[1] +
               (float)counts[CELL_NONE] * *pixel) / (float)(counts[0] + counts[1] + counts[CELL_NONE]);
 }
 
-static void paint_box(const brush *with, const pixel_box *box, corner_lines lines, canvas *picture)
+static void paint_box(const brush *with, corner_lines lines, canvas *picture)
 {
-    fill_line(with->to_tape, with->print, box, box->top - 0.5, lines.below);
+    const pixel_box *box = &with->tape->box;
+    fill_line(with->tape, with->print, box->top - 1, lines.below);
     for (int32_t y = box->top; y < box->bottom; y++) {
         place *line = lines.above;
         lines.above = lines.below;
         lines.below = line;
-        fill_line(with->to_tape, with->print, box, y + 0.5, lines.below);
-        for (int32_t x = box->left; x < box->right; x++) {
+        fill_line(with->tape, with->print, y, lines.below);
+        const pixel_span span = span_in_row(with->tape, y);
+        for (int32_t x = span.left; x < span.right; x++) {
             int32_t i = x - box->left;
             const place *const corners[4] = {&lines.above[i], &lines.above[i + 1], &lines.below[i + 1],
                                              &lines.below[i]};
@@ -152,30 +142,22 @@ static void paint_box(const brush *with, const pixel_box *box, corner_lines line
     }
 }
 
-bool paint_tape(const scene *view, const scene_tape *tape, float light, float dark, canvas *picture)
+bool paint_tape(world *seen, size_t thing_index, const tape_print *print, canvas *picture)
 {
-    matrix to_image = tape_to_image(view, tape), to_tape;
-    texture print;
-    if (!image_to_tape(&to_image, &to_tape))
-        return true;
-    if (!texture_of(tape, &print)) {
-        free(print.cells);
+    const thing *tape = &seen->things[thing_index];
+    size_t line_length = (size_t)(tape->box.right - tape->box.left) + 1;
+    place *lines = malloc(2 * line_length * sizeof *lines);
+    if (lines == NULL)
         return false;
-    }
+    const brush with = {seen, tape, (int32_t)thing_index, print, lattice_of(34, 21), lattice_of(89, 55)};
+    paint_box(&with, (corner_lines){lines, lines + line_length}, picture);
+    free(lines);
+    return true;
+}
 
-    bool done = true;
-    pixel_box box;
-    double left = -print.quiet_columns, top = -QUIET_ROWS;
-    if (project_box(view, &to_image, left, top, left + print.columns, top + print.rows, &box)) {
-        size_t line_length = (size_t)(box.right - box.left) + 1;
-        place *lines = malloc(2 * line_length * sizeof *lines);
-        done = lines != NULL;
-        if (done) {
-            brush with = {&to_tape, &print, {light, dark}};
-            paint_box(&with, &box, (corner_lines){lines, lines + line_length}, picture);
-        }
-        free(lines);
-    }
-    free(print.cells);
-    return done;
+float tape_light_at(const thing *tape, const tape_print *print, double x_px, double y_px)
+{
+    place here = place_of(&tape->to_plane, print, x_px, y_px);
+    int cell = cell_at(print, &here);
+    return print->shades[cell == CELL_NONE ? 0 : cell];
 }

@@ -3,9 +3,14 @@
 #define SCENE_TAPE_PAINT_H
 
 #include "canvas.h"
-#include "scene.h"
+#include "prints.h"
+#include "world.h"
 
-/* `light` and `dark` are in the picture's linear light. False when memory runs out. */
-bool paint_tape(const scene *view, const scene_tape *tape, float light, float dark, canvas *picture);
+/* Where nothing is in front of it; where it meets other tapes or pictures, pixels are only marked as mixed. False
+ * when memory runs out. */
+bool paint_tape(world *seen, size_t thing_index, const tape_print *print, canvas *picture);
+
+/* Its light at a point that is on it. */
+float tape_light_at(const thing *tape, const tape_print *print, double x_px, double y_px);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include "scene.h"
 
-void find_truth(const scene *view, scene_truth *truth);
+/* False when memory runs out. */
+bool find_truth(const scene *view, scene_truth *truth);
 
 #endif
