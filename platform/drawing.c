@@ -274,15 +274,6 @@ void drawing_add_line(drawing *page, drawing_point from, drawing_point to)
     cairo_line_to(page->context, to.x_mm, to.y_mm);
 }
 
-void drawing_add_circle(drawing *page, drawing_point centre, double radius_mm)
-{
-    const double whole_turn = 6.283185307179586;
-    cairo_new_sub_path(page->context);
-    cairo_arc(page->context, centre.x_mm, centre.y_mm, radius_mm, 0, whole_turn);
-    cairo_close_path(page->context);
-    cairo_new_sub_path(page->context);
-}
-
 void drawing_fill(drawing *page)
 {
     cairo_fill(page->context);

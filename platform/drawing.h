@@ -83,7 +83,6 @@ void drawing_set_colour(drawing *page, drawing_colour colour);
 void drawing_add_rectangle(drawing *page, drawing_point from, drawing_point to);
 void drawing_add_polygon(drawing *page, const drawing_point *corners, size_t count);
 void drawing_add_line(drawing *page, drawing_point from, drawing_point to);
-void drawing_add_circle(drawing *page, drawing_point centre, double radius_mm);
 void drawing_fill(drawing *page);
 
 /* dash_mm: of dashes and the gaps between them; 0 for a line without. */

@@ -227,6 +227,30 @@ extern "C" bool opencv_encode_png(const uint8_t *pixels, int32_t width_px, int32
     return true;
 }
 
+/* Standard error is left as it is: this runs beside threads that have something to say. */
+extern "C" size_t opencv_encode_jpeg(const uint8_t *bgr, int32_t width_px, int32_t height_px, uint8_t **bytes,
+                                     size_t *capacity)
+{
+    constexpr int quality = 80;
+    std::vector<uint8_t> encoded;
+    try {
+        const cv::Mat picture(height_px, width_px, CV_8UC3, const_cast<uint8_t *>(bgr));
+        if (!cv::imencode(".jpg", picture, encoded, {cv::IMWRITE_JPEG_QUALITY, quality}))
+            return 0;
+    } catch (const std::exception &) {
+        return 0;
+    }
+    if (encoded.size() > *capacity) {
+        auto larger = static_cast<uint8_t *>(std::realloc(*bytes, encoded.size()));
+        if (larger == nullptr)
+            return 0;
+        *bytes = larger;
+        *capacity = encoded.size();
+    }
+    std::memcpy(*bytes, encoded.data(), encoded.size());
+    return encoded.size();
+}
+
 extern "C" frame_source *opencv_video_open(const char *path, error_text *error)
 {
     video_file *file = nullptr;

@@ -1,5 +1,5 @@
 /*
- * What OpenCV does for us, behind a C interface: still pictures and videos to gray, gray to PNG.
+ * What OpenCV does for us, behind a C interface: still pictures and videos to gray, gray to PNG, colour to JPEG.
  * OpenCV and the libraries below it print their complaints themselves; while they work, standard error is
  * pointed at /dev/null, so that users get one line, ours.
  */
@@ -24,6 +24,10 @@ bool opencv_decode_still(const uint8_t *bytes, size_t size, gray_picture *pictur
 /* A gray picture, rows without gaps, as PNG. The caller frees the bytes. */
 bool opencv_encode_png(const uint8_t *pixels, int32_t width_px, int32_t height_px, uint8_t **bytes, size_t *size,
                        error_text *error);
+
+/* A picture in colour (blue, green, red) as JPEG, in memory that is used again: `*bytes` is malloc'ed, of
+ * `*capacity`, and grows as needed. Any thread. Answers the JPEG's size, 0 when memory runs out. */
+size_t opencv_encode_jpeg(const uint8_t *bgr, int32_t width_px, int32_t height_px, uint8_t **bytes, size_t *capacity);
 
 /* A video file, read through FFmpeg. Rotation tags are followed. NULL on failure. */
 frame_source *opencv_video_open(const char *path, error_text *error);

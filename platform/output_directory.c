@@ -22,7 +22,7 @@ struct output_directory {
     sigset_t watched, mask_before;
     pthread_t watcher;
     bool watching;
-    pthread_mutex_t moving;  /* held while files move: a signal has to wait */
+    pthread_mutex_t moving;  /* held while directories and files come, go or move: a signal has to wait */
 };
 
 /* ---- Paths --------------------------------------------------------------------------------------------------- */
@@ -109,6 +109,8 @@ static void remove_files(const char *folder)
 
 static void remove_temporary(const output_directory *directory)
 {
+    if (directory->temporary == NULL)
+        return;
     char *earlier = join_path(directory->temporary, EARLIER);
     if (earlier != NULL)
         remove_files(earlier);
@@ -180,12 +182,17 @@ static bool make_temporary(output_directory *directory)
     char *folder = directory->existed ? strdup(directory->path) : parent_of(directory->path);
     char *name = folder != NULL ? join_path(folder, ".unfinished-XXXXXX") : NULL;
     free(folder);
-    if (name == NULL || mkdtemp(name) == NULL) {
-        free(name);
+    if (name == NULL)
         return false;
-    }
-    directory->temporary = name;
-    return true;
+    /* A signal finds it made and known, or neither. */
+    pthread_mutex_lock(&directory->moving);
+    bool made = mkdtemp(name) != NULL;
+    if (made)
+        directory->temporary = name;
+    pthread_mutex_unlock(&directory->moving);
+    if (!made)
+        free(name);
+    return made;
 }
 
 /* What rules out a directory of this name; NULL when nothing does. */
@@ -221,7 +228,7 @@ output_directory *output_directory_open(const char *path, error_text *error)
         error_text_set(error, "not enough memory");
         return NULL;
     }
-    if (prepare(directory, path, error) && start_watching(directory, error))
+    if (start_watching(directory, error) && prepare(directory, path, error))
         return directory;
     output_directory_discard(directory);
     return NULL;
@@ -327,8 +334,7 @@ void output_directory_discard(output_directory *directory)
 {
     if (directory == NULL)
         return;
-    if (directory->temporary != NULL)
-        remove_temporary(directory);
+    remove_temporary(directory);
     release(directory);
 }
 

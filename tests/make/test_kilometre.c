@@ -14,26 +14,11 @@
 
 #include <cmocka.h>
 
+#include "own_folder.h"
+
 enum { SECONDS_MAX = 5, MEGABYTES_MAX = 300, LINES = 10 };
 
 static const char *program;
-static char work[200];
-
-static int enter_work(void **state)
-{
-    const char *folder = getenv("TMPDIR");
-    (void)state;
-    snprintf(work, sizeof work, "%s/tapemark-test-XXXXXX", folder != NULL ? folder : "/tmp");
-    return mkdtemp(work) != NULL && chdir(work) == 0 ? 0 : -1;
-}
-
-static int leave_work(void **state)
-{
-    char command[300];
-    (void)state;
-    snprintf(command, sizeof command, "rm -rf '%s'", work);
-    return chdir("/") == 0 && system(command) == 0 ? 0 : -1;
-}
 
 /* Corridors of 100 m, one beside the other. */
 static void write_plan(void)
@@ -84,7 +69,7 @@ int main(int argc, char *argv[])
     }
     program = argv[1];
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(a_kilometre_of_tape, enter_work, leave_work),
+        cmocka_unit_test_setup_teardown(a_kilometre_of_tape, enter_own_folder, leave_own_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

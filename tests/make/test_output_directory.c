@@ -8,24 +8,7 @@
 #include <sys/wait.h>
 
 #include "output_directory.h"
-
-static char work[200];
-
-static int enter_work(void **state)
-{
-    const char *folder = getenv("TMPDIR");
-    (void)state;
-    snprintf(work, sizeof work, "%s/tapemark-test-XXXXXX", folder != NULL ? folder : "/tmp");
-    return mkdtemp(work) != NULL && chdir(work) == 0 ? 0 : -1;
-}
-
-static int leave_work(void **state)
-{
-    char command[300];
-    (void)state;
-    snprintf(command, sizeof command, "rm -rf '%s'", work);
-    return chdir("/") == 0 && system(command) == 0 ? 0 : -1;
-}
+#include "own_folder.h"
 
 static void write_text(const char *folder, const char *name, const char *text)
 {
@@ -244,7 +227,7 @@ static void signals_work_as_before_afterwards(void **state)
     assert_false(sigismember(&mask, SIGTERM));
 }
 
-#define IN_WORK(test) cmocka_unit_test_setup_teardown(test, enter_work, leave_work)
+#define IN_WORK(test) cmocka_unit_test_setup_teardown(test, enter_own_folder, leave_own_folder)
 
 int main(void)
 {

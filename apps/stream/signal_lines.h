@@ -1,0 +1,36 @@
+/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and then left alone. */
+#ifndef STREAM_SIGNAL_LINES_H
+#define STREAM_SIGNAL_LINES_H
+
+#include "camera.h"
+#include "gpio_lines.h"
+#include "settings.h"
+#include "strobe.h"
+
+/* All zero at first. */
+typedef struct signal_lines {
+    gpio_output *seen;
+    gpio_input *trigger;
+    strobe *strobe;
+    int64_t last_exposure_ns;  /* the middle of it; 0: none yet */
+    int64_t period_ns;
+    unsigned failures;
+} signal_lines;
+
+/* Takes those that are named, after leaving the ones before. Those that cannot be had are told of and left out. */
+void signal_lines_open(signal_lines *lines, const gpio_settings *wanted);
+
+void signal_lines_show_seen(signal_lines *lines, bool seen);
+
+/* Foretells the next exposure from the one of this frame and sets the strobe on around it. */
+void signal_lines_foretell(signal_lines *lines, const camera_frame *got, int64_t now_ns);
+
+/* Whether the trigger went on since the last call. */
+bool signal_lines_triggered(signal_lines *lines);
+
+/* For poll(); -1 without a trigger. */
+int signal_lines_descriptor(const signal_lines *lines);
+
+void signal_lines_close(signal_lines *lines);
+
+#endif

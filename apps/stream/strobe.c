@@ -1,0 +1,132 @@
+#include "strobe.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+struct strobe {
+    gpio_output *line;
+    pthread_t thread;
+    pthread_mutex_t mutex;
+    pthread_cond_t changed;
+    int64_t on_ns, off_ns;
+    bool planned;
+    bool ending;
+    bool failed;
+    error_text failure;
+};
+
+/* Until then or until something has changed; with the mutex held. */
+static void wait_until(strobe *self, int64_t time_ns)
+{
+    struct timespec when = {(time_t)(time_ns / 1000000000), (long)(time_ns % 1000000000)};
+    pthread_cond_timedwait(&self->changed, &self->mutex, &when);
+}
+
+static int64_t clock_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+}
+
+static void set_line(strobe *self, bool on)
+{
+    error_text reason;
+    if (!gpio_output_set(self->line, on, &reason)) {
+        self->failed = true;
+        self->failure = reason;
+    }
+}
+
+static void flash(strobe *self)
+{
+    int64_t off_ns = self->off_ns;
+    self->planned = false;
+    set_line(self, true);
+    while (!self->ending && clock_ns() < off_ns)
+        wait_until(self, off_ns);
+    set_line(self, false);
+}
+
+static void *run(void *context)
+{
+    strobe *self = context;
+    pthread_mutex_lock(&self->mutex);
+    while (!self->ending) {
+        if (!self->planned)
+            pthread_cond_wait(&self->changed, &self->mutex);
+        else if (clock_ns() < self->on_ns)
+            wait_until(self, self->on_ns);
+        else
+            flash(self);
+    }
+    pthread_mutex_unlock(&self->mutex);
+    return NULL;
+}
+
+static void init_waiting(strobe *self)
+{
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&self->changed, &attributes);
+    pthread_condattr_destroy(&attributes);
+    pthread_mutex_init(&self->mutex, NULL);
+}
+
+strobe *strobe_open(gpio_output *line, error_text *error)
+{
+    strobe *self = calloc(1, sizeof *self);
+    if (self == NULL) {
+        error_text_set(error, "not enough memory");
+        gpio_output_close(line);
+        return NULL;
+    }
+    self->line = line;
+    init_waiting(self);
+    int failure = pthread_create(&self->thread, NULL, run, self);
+    if (failure == 0)
+        return self;
+    error_text_set(error, "cannot start a thread for the strobe: %s", strerror(failure));
+    gpio_output_close(line);
+    free(self);
+    return NULL;
+}
+
+void strobe_plan(strobe *self, int64_t on_ns, int64_t off_ns)
+{
+    pthread_mutex_lock(&self->mutex);
+    self->on_ns = on_ns;
+    self->off_ns = off_ns;
+    self->planned = true;
+    pthread_cond_signal(&self->changed);
+    pthread_mutex_unlock(&self->mutex);
+}
+
+bool strobe_news(strobe *self, error_text *message)
+{
+    pthread_mutex_lock(&self->mutex);
+    bool news = self->failed;
+    if (news)
+        *message = self->failure;
+    self->failed = false;
+    pthread_mutex_unlock(&self->mutex);
+    return news;
+}
+
+void strobe_close(strobe *self)
+{
+    if (self == NULL)
+        return;
+    pthread_mutex_lock(&self->mutex);
+    self->ending = true;
+    pthread_cond_signal(&self->changed);
+    pthread_mutex_unlock(&self->mutex);
+    pthread_join(self->thread, NULL);
+    pthread_cond_destroy(&self->changed);
+    pthread_mutex_destroy(&self->mutex);
+    gpio_output_close(self->line);
+    free(self);
+}

@@ -1,0 +1,588 @@
+/* The microcontroller's end on an undamaged line: what it takes, what it refuses, and what it lets pass. */
+#include "link_test.h"
+
+/* ---- Messages made by hand ---------------------------------------------------------------------------- */
+
+/* The CRC bit by bit, as textbooks have it. */
+static uint16_t slow_crc(const uint8_t *bytes, size_t count)
+{
+    uint16_t crc = 0xffff;
+    for (size_t i = 0; i < 8 * count; i++) {
+        const bool out = (crc & 0x8000) != 0;
+        const bool in = (bytes[i / 8] & 0x80 >> i % 8) != 0;
+        crc = (uint16_t)(crc << 1);
+        if (out != in)
+            crc ^= 0x1021;
+    }
+    return crc;
+}
+
+static message sentence_with_crc(const char *fields, const char *crc)
+{
+    char body[200];
+    snprintf(body, sizeof body, "%s,%s", fields, crc);
+    unsigned sum = 0;
+    for (const char *at = body; *at != '\0'; at++)
+        sum ^= (uint8_t)*at;
+    message made;
+    made.size = (size_t)snprintf((char *)made.bytes, sizeof made.bytes, "$%s*%02X\r\n", body, sum);
+    assert_true(made.size < sizeof made.bytes);
+    return made;
+}
+
+/* "PTMKF,1,2" as a sentence with both checks. */
+static message sentence_of(const char *fields)
+{
+    char checked[200];
+    char crc[8];
+    snprintf(checked, sizeof checked, "%s,", fields);
+    snprintf(crc, sizeof crc, "%04X", slow_crc((const uint8_t *)checked, strlen(checked)));
+    return sentence_with_crc(fields, crc);
+}
+
+static message packet_of(const uint8_t *fields, size_t size)
+{
+    uint8_t payload[70];
+    memcpy(payload, fields, size);
+    const uint16_t crc = slow_crc(payload, size);
+    payload[size] = (uint8_t)crc;
+    payload[size + 1] = (uint8_t)(crc >> 8);
+    message made = {.bytes = {0}, .size = 2};
+    size_t block = 1;
+    for (size_t i = 0; i < size + 2; i++) {
+        if (payload[i] == 0) {
+            made.bytes[block] = (uint8_t)(made.size - block);
+            block = made.size;
+        }
+        made.bytes[made.size++] = payload[i];
+    }
+    made.bytes[block] = (uint8_t)(made.size - block);
+    made.bytes[made.size++] = 0;
+    return made;
+}
+
+/* ---- Records come out as they went in ----------------------------------------------------------------- */
+
+static void crc_is_the_one_of_the_page(void **state)
+{
+    (void)state;
+    uint16_t crc = 0xffff;
+    for (const char *at = "123456789"; *at != '\0'; at++)
+        crc = tapemark_crc16(crc, (uint8_t)*at);
+    assert_int_equal(crc, 0x29b1);
+    assert_int_equal(slow_crc((const uint8_t *)"123456789", 9), 0x29b1);
+}
+
+static void records_come_out_as_they_went_in(void **state)
+{
+    (void)state;
+    uint32_t random = 1;
+    tapemark_receiver receiver = {0};
+    for (int round = 0; round < 40000; round++) {
+        const tapemark_record record = random_record(&random, (uint8_t)(1 + round % RECORD_TYPES));
+        const tapemark_encoding encoding = random_below(&random, 2) ? TAPEMARK_PACKETS : TAPEMARK_SENTENCES;
+        const message sent = message_of(&record, encoding);
+        assert_int_equal(push_message(&receiver, &sent), 1);
+        assert_same_record(&receiver.record, &record);
+    }
+    assert_int_equal(receiver.damaged, 0);
+    assert_int_equal(receiver.unknown, 0);
+}
+
+/* Its state is all in it: it may stop after any byte, lie elsewhere in memory, and go on. */
+static void receiver_may_pause_and_move_after_any_byte(void **state)
+{
+    (void)state;
+    uint32_t random = 2;
+    for (uint8_t type = 1; type <= RECORD_TYPES; type++)
+        for (tapemark_encoding encoding = TAPEMARK_SENTENCES; encoding <= TAPEMARK_PACKETS; encoding++) {
+            const tapemark_record record = random_record(&random, type);
+            const message sent = message_of(&record, encoding);
+            for (size_t split = 0; split <= sent.size; split++) {
+                tapemark_receiver first = {0};
+                int records = push_all(&first, sent.bytes, split);
+                tapemark_receiver *second = malloc(sizeof *second);
+                assert_non_null(second);
+                memcpy(second, &first, sizeof first);
+                memset(&first, 0xa5, sizeof first);
+                records += push_all(second, sent.bytes + split, sent.size - split);
+                assert_int_equal(records, 1);
+                assert_same_record(&second->record, &record);
+                free(second);
+            }
+        }
+}
+
+static void two_receivers_do_not_disturb_each_other(void **state)
+{
+    (void)state;
+    uint32_t random = 3;
+    tapemark_receiver receivers[2] = {{.damaged = 0}, {.damaged = 0}};
+    for (int round = 0; round < 1000; round++) {
+        const tapemark_record one = random_record(&random, TAPEMARK_RECORD_CM);
+        const tapemark_record other = random_record(&random, TAPEMARK_RECORD_TM);
+        const message sent[2] = {message_of(&one, TAPEMARK_SENTENCES), message_of(&other, TAPEMARK_PACKETS)};
+        int records[2] = {0, 0};
+        for (size_t i = 0; i < TAPEMARK_SENTENCE_MAX_BYTES; i++)
+            for (int end = 0; end < 2; end++)
+                if (i < sent[end].size)
+                    records[end] += push_all(&receivers[end], sent[end].bytes + i, 1);
+        assert_int_equal(records[0], 1);
+        assert_int_equal(records[1], 1);
+        assert_same_record(&receivers[0].record, &one);
+        assert_same_record(&receivers[1].record, &other);
+    }
+}
+
+static void a_sentence_is_complete_with_its_checksum(void **state)
+{
+    (void)state;
+    const tapemark_record record = {.type = TAPEMARK_RECORD_DEVICE};
+    const message sent = message_of(&record, TAPEMARK_SENTENCES);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_all(&receiver, sent.bytes, sent.size - 3), 0);
+    assert_int_equal(push_all(&receiver, sent.bytes + sent.size - 3, 1), 1);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    assert_int_equal(receiver.damaged, 0);
+}
+
+static void one_zero_between_packets_will_do(void **state)
+{
+    (void)state;
+    uint32_t random = 4;
+    tapemark_receiver receiver = {0};
+    tapemark_receiver_push(&receiver, 0);
+    for (int round = 0; round < 100; round++) {
+        const tapemark_record record = random_record(&random, (uint8_t)(1 + round % RECORD_TYPES));
+        const message sent = message_of(&record, TAPEMARK_PACKETS);
+        assert_int_equal(push_all(&receiver, sent.bytes + 1, sent.size - 1), 1);
+        assert_same_record(&receiver.record, &record);
+    }
+}
+
+/* ---- What depends on a flag --------------------------------------------------------------------------- */
+
+static void a_field_without_its_flag_is_zero_whatever_is_sent(void **state)
+{
+    (void)state;
+    static const uint8_t place[] = {0x14, 1, 0, 2, 0, 3, 0, 0, 0, 4, 0, 0, 0, 0x10, 0x0e};
+    tapemark_receiver receiver;
+    memset(&receiver.record, 0xff, sizeof receiver.record);
+    tapemark_receiver_reset(&receiver);
+    const message sent = packet_of(place, sizeof place);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    assert_int_equal(receiver.record.as.place.y_mm, 4);
+    assert_int_equal(receiver.record.as.place.heading_tenth_deg, 0);
+}
+
+static void no_flag_of_the_upper_byte_makes_a_field_known(void **state)
+{
+    (void)state;
+    tapemark_record record = longest_record(TAPEMARK_RECORD_FRAME);
+    record.as.frame.flags = 0xff00;
+    const message sent = message_of(&record, TAPEMARK_PACKETS);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    assert_int_equal(receiver.record.as.frame.capture_us, 0);
+    assert_int_equal(receiver.record.as.frame.flags, 0xff00);
+    assert_int_equal(receiver.record.as.frame.width_px, 6553);
+}
+
+/* ---- Sentences that are refused ------------------------------------------------------------------------ */
+
+static const char good_place[] = "PTMKP,1,2,01,-3,4,5";
+
+static void a_sentence_made_by_hand_is_taken(void **state)
+{
+    (void)state;
+    const message sent = sentence_of(good_place);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    assert_int_equal(receiver.record.as.place.x_mm, -3);
+    assert_int_equal(receiver.record.as.place.heading_tenth_deg, 5);
+}
+
+/* Their checks are right, and what they say is not. */
+static void sentences_that_break_the_rules_are_damaged(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {
+        "PTMKP,,2,01,-3,4,5",           /* empty, and has to be known */
+        "PTMKP,1,2,01,-3,4,",           /* likewise, by its flag */
+        "PTMKP,1,2,00,-3,4,5",          /* not empty, and is not known */
+        "PTMKP,1,2,01,-3,4",            /* too few */
+        "PTMKP,1,2,00,-3,4",            /* too few, though the missing one would be empty */
+        "PTMKA,1,OK,2",
+        "PTMKP",                        /* none */
+        "PTMKP,65536,2,01,-3,4,5",      /* u16 */
+        "PTMKP,1,256,01,-3,4,5",        /* u8 */
+        "PTMKP,-1,2,01,-3,4,5",         /* a sign, where there is none */
+        "PTMKP,+1,2,01,-3,4,5",
+        "PTMKP, 1,2,01,-3,4,5",
+        "PTMKP,1 ,2,01,-3,4,5",
+        "PTMKP,1.0,2,01,-3,4,5",
+        "PTMKP,0x1,2,01,-3,4,5",
+        "PTMKP,1,2,1,-3,4,5",           /* hexadecimal: two digits */
+        "PTMKP,1,2,001,-3,4,5",
+        "PTMKP,1,2,0g,-3,4,5",
+        "PTMKP,1,2,0f,-3,4,5",          /* and upper case */
+        "PTMKP,1,2,01,-,4,5",
+        "PTMKP,1,2,01,--3,4,5",
+        "PTMKP,1,2,01,2147483648,4,5",  /* i32 */
+        "PTMKP,1,2,01,-2147483649,4,5",
+        "PTMKP,1,2,01,4294967295,4,5",
+        "PTMKP,1,2,01,99999999999,4,5", /* beyond 32 bits */
+        "PTMKP,1,2,01,42949672960,4,5",
+        "PTMKD,4294967296,1,2,3,4",
+        "PTMKD,4294967300,1,2,3,4",
+        "PTMKA,1,OKAY,2,text",          /* a text too long */
+        "PTMKA,1,OK,2,12345678901234567890123456789012345678901",
+        "PTMKA,1,O!,2,text",
+        "PTMKA,1,OK,2,a^b",
+        "PTMKPP,1,2,01,-3,4,5",         /* a letter too many */
+        "PTMK,1,2,01,-3,4,5",
+    };
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        const message sent = sentence_of(bad[i]);
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_message(&receiver, &sent), 0);
+        assert_int_equal(receiver.damaged, 1);
+        const message next = sentence_of(good_place);
+        assert_int_equal(push_message(&receiver, &next), 1);
+    }
+}
+
+/* After a whole one, whose end still lies in the receiver. */
+static void sentences_that_stop_early_are_damaged(void **state)
+{
+    (void)state;
+    const message whole = sentence_of(good_place);
+    for (size_t length = 4; length < sizeof good_place + 4; length++) {
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_message(&receiver, &whole), 1);
+        unsigned sum = 0;
+        for (size_t i = 1; i <= length; i++)
+            sum ^= whole.bytes[i];
+        char end[8];
+        const int size = snprintf(end, sizeof end, "*%02X\r\n", sum);
+        push_all(&receiver, whole.bytes, length + 1);
+        assert_int_equal(push_all(&receiver, (const uint8_t *)end, (size_t)size), 0);
+        assert_int_equal(receiver.damaged, 1);
+    }
+}
+
+static void numbers_at_the_ends_of_their_ranges_are_taken(void **state)
+{
+    (void)state;
+    tapemark_receiver receiver = {0};
+    const message place = sentence_of("PTMKP,65535,255,FE,-2147483648,2147483647,");
+    assert_int_equal(push_message(&receiver, &place), 1);
+    assert_int_equal(receiver.record.as.place.x_mm, INT32_MIN);
+    assert_int_equal(receiver.record.as.place.y_mm, INT32_MAX);
+    const message device = sentence_of("PTMKD,4294967295,0,00,255,1");
+    assert_int_equal(push_message(&receiver, &device), 1);
+    assert_int_equal(receiver.record.as.device.uptime_s, UINT32_MAX);
+    assert_int_equal(receiver.record.as.device.version_patch, 255);
+}
+
+static void both_checks_of_a_sentence_are_held(void **state)
+{
+    (void)state;
+    tapemark_receiver receiver = {0};
+    message sent = sentence_with_crc(good_place, "0000");
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 1);
+
+    sent = sentence_of(good_place);
+    sent.bytes[sent.size - 3] ^= 1;
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 2);
+
+    /* The right value, in five digits. */
+    char crc[8];
+    snprintf(crc, sizeof crc, "0%.4s", strrchr((const char *)sent.bytes, ',') + 1);
+    sent = sentence_with_crc(good_place, crc);
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 3);
+
+    sent = sentence_with_crc(good_place, crc + 1);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    for (char *at = crc; *at != '\0'; at++)
+        *at = (char)(*at >= 'A' ? *at + 'a' - 'A' : *at);
+    sent = sentence_with_crc(good_place, crc + 1);
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 4);
+}
+
+static void a_checksum_has_two_upper_case_digits(void **state)
+{
+    (void)state;
+    for (int x_mm = 0; x_mm < 256; x_mm++) {
+        char fields[40];
+        snprintf(fields, sizeof fields, "PTMKP,1,2,00,%d,4,", x_mm);
+        const message whole = sentence_of(fields);
+        for (size_t from_end = 3; from_end <= 4; from_end++)
+            for (const char *bad = "/:@Gaf g"; *bad != '\0'; bad++) {
+                message sent = whole;
+                sent.bytes[sent.size - from_end] = (uint8_t)*bad;
+                tapemark_receiver receiver = {0};
+                assert_int_equal(push_message(&receiver, &sent), 0);
+                assert_int_equal(receiver.damaged, 1);
+            }
+    }
+}
+
+static void a_line_end_ends_a_sentence(void **state)
+{
+    (void)state;
+    static const char torn[] = "$PTMKP,1,2\r";
+    tapemark_receiver receiver = {0};
+    push_all(&receiver, (const uint8_t *)torn, sizeof torn - 2);
+    assert_int_equal(receiver.damaged, 0);
+    push_all(&receiver, (const uint8_t *)torn + sizeof torn - 2, 1);
+    assert_int_equal(receiver.damaged, 1);
+}
+
+static void sentences_of_other_makers_pass_in_silence(void **state)
+{
+    (void)state;
+    static const char others[] = "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n"
+                                 "$PTMJF,1*00\r\n$PTNKF\r\n!AIVDM,1,1,,A,15M*00\r\nhello\r\n$\r\n$P*00\r\n";
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_all(&receiver, (const uint8_t *)others, sizeof others - 1), 0);
+    assert_int_equal(receiver.damaged, 0);
+    assert_int_equal(receiver.unknown, 0);
+}
+
+/* ---- Packets that are refused -------------------------------------------------------------------------- */
+
+static void packets_that_break_the_rules_are_damaged(void **state)
+{
+    (void)state;
+    static const struct {
+        uint8_t size;
+        uint8_t payload[60];
+    } bad[] = {
+        {1, {0x16}},                                      /* no fields */
+        {8, {0x16, 1, 2, 3, 4, 5, 6, 7}},                 /* one byte short */
+        {4, {0x17, 1, 0, 5}},                             /* a text longer than the packet */
+        {10, {0x17, 1, 0, 3, 'E', 'R', 'R', 1, 2, 3}},    /* ends within a number */
+        {11, {0x17, 1, 0, 3, 'E', 'R', 'R', 1, 2, 3, 4}}, /* a text missing */
+        {12, {0x17, 1, 0, 3, 'E', 'R', 'R', 1, 2, 3, 4, 1}},
+        {13, {0x17, 1, 0, 4, 'O', 'K', 'A', 'Y', 1, 2, 3, 4, 0}}, /* a text too long */
+        {13, {0x17, 1, 0, 2, 'O', 'K', 1, 2, 3, 4, 2, 'a', ','}},
+        {13, {0x17, 1, 0, 2, 'O', 'K', 1, 2, 3, 4, 2, 'a', 0}},
+    };
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        const message sent = packet_of(bad[i].payload, bad[i].size);
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_message(&receiver, &sent), 0);
+        assert_int_equal(receiver.damaged, 1);
+        assert_int_equal(receiver.unknown, 0);
+    }
+}
+
+/* Whatever the CRC's bytes happen to be: lengths or letters, for instance. */
+static void texts_do_not_reach_into_the_crc(void **state)
+{
+    (void)state;
+    for (unsigned value = 0; value < 0x10000; value++) {
+        const uint8_t answer[] = {0x17, (uint8_t)value, (uint8_t)(value >> 8), 2, 'O', 'K', 1, 2, 3, 4, 1};
+        for (size_t size = sizeof answer - 1; size <= sizeof answer; size++) {
+            const message sent = packet_of(answer, size);
+            tapemark_receiver receiver = {0};
+            assert_int_equal(push_message(&receiver, &sent), 0);
+            assert_int_equal(receiver.damaged, 1);
+        }
+    }
+}
+
+/* All their bytes are there, and right, and there should have been more. */
+static void packets_that_end_within_a_block_are_damaged(void **state)
+{
+    (void)state;
+    static const uint8_t device[] = {0x16, 9, 8, 7, 6, 5, 4, 3, 2};
+    message sent = packet_of(device, sizeof device);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(sent.bytes[1], sizeof device + 3);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    sent.bytes[1]++;
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 1);
+}
+
+/* The part that fits is a packet by itself. */
+static void packets_that_are_too_long_are_damaged(void **state)
+{
+    (void)state;
+    const tapemark_record record = longest_record(TAPEMARK_RECORD_COMMAND);
+    message sent = message_of(&record, TAPEMARK_PACKETS);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(sent.bytes[1], TAPEMARK_PAYLOAD_MAX + 1);
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    sent.bytes[1]++;
+    sent.bytes[TAPEMARK_PACKET_MAX_BYTES - 1] = 'x';
+    sent.bytes[TAPEMARK_PACKET_MAX_BYTES] = 0;
+    sent.size = TAPEMARK_PACKET_MAX_BYTES + 1;
+    assert_int_equal(push_message(&receiver, &sent), 0);
+    assert_int_equal(receiver.damaged, 1);
+}
+
+static void a_reset_receiver_has_forgotten_everything(void **state)
+{
+    (void)state;
+    const tapemark_record record = longest_record(TAPEMARK_RECORD_PLACE);
+    for (tapemark_encoding encoding = TAPEMARK_SENTENCES; encoding <= TAPEMARK_PACKETS; encoding++) {
+        const message sent = message_of(&record, encoding);
+        tapemark_receiver receiver = {.damaged = 1, .unknown = 2};
+        assert_int_equal(push_all(&receiver, sent.bytes, sent.size / 2), 0);
+        tapemark_receiver_reset(&receiver);
+        assert_int_equal(push_all(&receiver, sent.bytes + sent.size / 2, sent.size - sent.size / 2), 0);
+        assert_int_equal(receiver.damaged + receiver.unknown, 0);
+    }
+}
+
+static void packets_without_a_payload_are_damaged(void **state)
+{
+    (void)state;
+    /* The second one's CRC is right, for no byte at all. */
+    static const uint8_t bad[][5] = {{0, 2, 0x11, 0, 0}, {0, 3, 0xff, 0xff, 0}, {0, 1, 0, 0, 0}, {0, 1, 1, 0, 0}};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_all(&receiver, bad[i], sizeof bad[i]), 0);
+        assert_int_equal(receiver.damaged, 1);
+        assert_int_equal(receiver.unknown, 0);
+    }
+}
+
+static void a_silent_line_of_zeros_is_no_damage(void **state)
+{
+    (void)state;
+    static const uint8_t zeros[1000];
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_all(&receiver, zeros, sizeof zeros), 0);
+    assert_int_equal(receiver.damaged, 0);
+}
+
+/* ---- Later versions ------------------------------------------------------------------------------------ */
+
+static void appended_fields_are_left_aside(void **state)
+{
+    (void)state;
+    tapemark_receiver receiver = {0};
+    const message sentence = sentence_of("PTMKP,1,2,01,-3,4,5,6,,seven");
+    assert_int_equal(push_message(&receiver, &sentence), 1);
+    assert_int_equal(receiver.record.as.place.heading_tenth_deg, 5);
+
+    static const uint8_t device[] = {0x16, 9, 0, 0, 0, 0, 1, 2, 1, 0, 77, 0};
+    const message packet = packet_of(device, sizeof device);
+    assert_int_equal(push_message(&receiver, &packet), 1);
+    assert_int_equal(receiver.record.as.device.uptime_s, 9);
+    assert_int_equal(receiver.damaged + receiver.unknown, 0);
+}
+
+static void new_records_are_counted_as_unknown(void **state)
+{
+    (void)state;
+    tapemark_receiver receiver = {0};
+    const message sentence = sentence_of("PTMKX,1,2,3");
+    assert_int_equal(push_message(&receiver, &sentence), 0);
+    assert_int_equal(receiver.unknown, 1);
+    static const uint8_t heads[] = {0x00, 0x10, 0x19, 0x1a, 0x1f, 0x01, 0x26, 0xf6};
+    for (uint16_t i = 0; i < sizeof heads; i++) {
+        const uint8_t device[] = {heads[i], 9, 0, 0, 0, 0, 1, 0, 1};
+        const message packet = packet_of(device, sizeof device);
+        assert_int_equal(push_message(&receiver, &packet), 0);
+        assert_int_equal(receiver.unknown, 2 + i);
+    }
+    assert_int_equal(receiver.damaged, 0);
+}
+
+/* ---- Commands ------------------------------------------------------------------------------------------ */
+
+static void commands_are_read_as_they_were_written(void **state)
+{
+    (void)state;
+    tapemark_receiver receiver = {0};
+    char buffer[TAPEMARK_SENTENCE_MAX_BYTES];
+    const uint16_t numbers[] = {0, 7, 10, 99, 100, 12345, 65535};
+    for (size_t i = 0; i < COUNT_OF(numbers); i++) {
+        const size_t size = tapemark_command_write(buffer, sizeof buffer, numbers[i], "SET", "exposure", "500");
+        tapemark_record expected = {.type = TAPEMARK_RECORD_COMMAND};
+        expected.as.command = (tapemark_command_record){numbers[i], "SET", "exposure", "500"};
+        assert_int_equal(push_all(&receiver, (const uint8_t *)buffer, size), 1);
+        assert_same_record(&receiver.record, &expected);
+
+        const message sent = message_of(&expected, TAPEMARK_SENTENCES);
+        assert_int_equal(size, sent.size);
+        assert_memory_equal(buffer, sent.bytes, size);
+    }
+    const size_t size = tapemark_command_write(buffer, sizeof buffer, 1, "VERSION", NULL, NULL);
+    assert_int_equal(push_all(&receiver, (const uint8_t *)buffer, size), 1);
+    assert_string_equal(receiver.record.as.command.verb, "VERSION");
+    assert_string_equal(receiver.record.as.command.name, "");
+}
+
+static void commands_fit_or_are_refused(void **state)
+{
+    (void)state;
+    const tapemark_record longest = longest_record(TAPEMARK_RECORD_COMMAND);
+    const tapemark_command_record *command = &longest.as.command;
+    const size_t needed = message_of(&longest, TAPEMARK_SENTENCES).size;
+    for (size_t size = 0; size <= needed; size++) {
+        char *buffer = malloc(size > 0 ? size : 1);
+        assert_non_null(buffer);
+        const size_t written =
+            tapemark_command_write(buffer, size, command->number, command->verb, command->name, command->value);
+        assert_int_equal(written, size == needed ? needed : 0);
+        free(buffer);
+    }
+}
+
+static void commands_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    char buffer[TAPEMARK_SENTENCE_MAX_BYTES];
+    assert_int_equal(tapemark_command_write(buffer, sizeof buffer, 1, "VERSIONS", NULL, NULL), 0);
+    assert_int_equal(tapemark_command_write(buffer, sizeof buffer, 1, "GET", "a name that is long", NULL), 0);
+    assert_int_equal(
+        tapemark_command_write(buffer, sizeof buffer, 1, "SET", "roi", "a value of more than 31 letters."), 0);
+    assert_int_equal(tapemark_command_write(buffer, sizeof buffer, 1, "SET", "roi", "1,2"), 0);
+    assert_int_equal(tapemark_command_write(buffer, sizeof buffer, 1, "SET", "roi*", "1"), 0);
+    assert_int_equal(tapemark_command_write(buffer, sizeof buffer, 1, "SE\nT", "roi", "1"), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crc_is_the_one_of_the_page),
+        cmocka_unit_test(records_come_out_as_they_went_in),
+        cmocka_unit_test(receiver_may_pause_and_move_after_any_byte),
+        cmocka_unit_test(two_receivers_do_not_disturb_each_other),
+        cmocka_unit_test(a_sentence_is_complete_with_its_checksum),
+        cmocka_unit_test(one_zero_between_packets_will_do),
+        cmocka_unit_test(a_field_without_its_flag_is_zero_whatever_is_sent),
+        cmocka_unit_test(no_flag_of_the_upper_byte_makes_a_field_known),
+        cmocka_unit_test(a_sentence_made_by_hand_is_taken),
+        cmocka_unit_test(sentences_that_break_the_rules_are_damaged),
+        cmocka_unit_test(sentences_that_stop_early_are_damaged),
+        cmocka_unit_test(numbers_at_the_ends_of_their_ranges_are_taken),
+        cmocka_unit_test(a_checksum_has_two_upper_case_digits),
+        cmocka_unit_test(a_line_end_ends_a_sentence),
+        cmocka_unit_test(both_checks_of_a_sentence_are_held),
+        cmocka_unit_test(sentences_of_other_makers_pass_in_silence),
+        cmocka_unit_test(packets_that_break_the_rules_are_damaged),
+        cmocka_unit_test(texts_do_not_reach_into_the_crc),
+        cmocka_unit_test(packets_that_end_within_a_block_are_damaged),
+        cmocka_unit_test(packets_that_are_too_long_are_damaged),
+        cmocka_unit_test(a_reset_receiver_has_forgotten_everything),
+        cmocka_unit_test(packets_without_a_payload_are_damaged),
+        cmocka_unit_test(a_silent_line_of_zeros_is_no_damage),
+        cmocka_unit_test(appended_fields_are_left_aside),
+        cmocka_unit_test(new_records_are_counted_as_unknown),
+        cmocka_unit_test(commands_are_read_as_they_were_written),
+        cmocka_unit_test(commands_fit_or_are_refused),
+        cmocka_unit_test(commands_out_of_range_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

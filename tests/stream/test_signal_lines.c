@@ -1,0 +1,196 @@
+/* The GPIO lines, with a fake in the place of the chips. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+
+#include <cmocka.h>
+
+#include "signal_lines.h"
+
+static const int64_t ms = 1000000;
+
+/* A strobe's thread writes, the test reads when that thread has ended. */
+static struct {
+    unsigned opened, closed, sets, events;
+    bool on, broken;
+    int64_t on_ns, off_ns;  /* when it last went on and off */
+} fake;
+
+static char memory;
+
+gpio_output *__wrap_gpio_output_open(const char *name, error_text *error)
+{
+    error_text_set(error, "is in use");
+    fake.opened += strcmp(name, "0:9") != 0;
+    return strcmp(name, "0:9") != 0 ? (gpio_output *)(void *)&memory : NULL;
+}
+
+bool __wrap_gpio_output_set(gpio_output *line, bool on, error_text *error)
+{
+    (void)line;
+    fake.sets++;
+    if (fake.broken) {
+        fake.broken = false;
+        error_text_set(error, "is gone");
+        return false;
+    }
+    if (on)
+        fake.on_ns = camera_clock_ns();
+    else
+        fake.off_ns = camera_clock_ns();
+    fake.on = on;
+    return true;
+}
+
+void __wrap_gpio_output_close(gpio_output *line)
+{
+    fake.closed += line != NULL;
+}
+
+gpio_input *__wrap_gpio_input_open(const char *name, error_text *error)
+{
+    (void)name;
+    (void)error;
+    fake.opened++;
+    return (gpio_input *)(void *)&memory;
+}
+
+int __wrap_gpio_input_descriptor(const gpio_input *line)
+{
+    (void)line;
+    return 17;
+}
+
+bool __wrap_gpio_input_events(gpio_input *line, unsigned *count, error_text *error)
+{
+    (void)line;
+    error_text_set(error, "is gone");
+    *count = fake.events;
+    fake.events = 0;
+    return !fake.broken;
+}
+
+void __wrap_gpio_input_close(gpio_input *line)
+{
+    fake.closed += line != NULL;
+}
+
+static int begin(void **state)
+{
+    (void)state;
+    memset(&fake, 0, sizeof fake);
+    return 0;
+}
+
+static void sleep_until(int64_t time_ns)
+{
+    const struct timespec when = {(time_t)(time_ns / 1000000000), (long)(time_ns % 1000000000)};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, NULL);
+}
+
+/* ---- Tests -------------------------------------------------------------------------------------------------- */
+
+static void lines_that_are_not_named_cost_nothing(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings none = {0};
+    const camera_frame got = {.image = {.time_ns = 1}};
+    signal_lines_open(&lines, &none);
+    signal_lines_show_seen(&lines, true);
+    signal_lines_foretell(&lines, &got, 2);
+    assert_false(signal_lines_triggered(&lines));
+    assert_int_equal(signal_lines_descriptor(&lines), -1);
+    signal_lines_close(&lines);
+    assert_int_equal(fake.opened + fake.sets + lines.failures, 0);
+}
+
+static void seen_is_shown_and_lines_are_given_back(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings wanted = {.seen = "0:4", .strobe = "0:5", .trigger = "0:6"};
+    signal_lines_open(&lines, &wanted);
+    assert_int_equal(fake.opened, 3);
+    signal_lines_show_seen(&lines, true);
+    assert_true(fake.on);
+    signal_lines_show_seen(&lines, false);
+    assert_false(fake.on);
+    fake.events = 2;
+    assert_int_equal(signal_lines_descriptor(&lines), 17);
+    assert_true(signal_lines_triggered(&lines));
+    assert_false(signal_lines_triggered(&lines));
+    signal_lines_open(&lines, &wanted);
+    assert_int_equal(fake.closed, 3);
+    signal_lines_close(&lines);
+    assert_int_equal(fake.closed, 6);
+}
+
+static void line_that_fails_is_counted(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings wanted = {.seen = "0:4", .strobe = "0:9"};
+    signal_lines_open(&lines, &wanted);
+    assert_int_equal(lines.failures, 1);
+    assert_null(lines.strobe);
+    fake.broken = true;
+    signal_lines_show_seen(&lines, true);
+    assert_int_equal(lines.failures, 2);
+    signal_lines_close(&lines);
+    assert_int_equal(lines.failures, 2);
+}
+
+/* A frame every 100 ms, exposed for 20 ms; told 30 ms after the middle of its exposure. */
+static void strobe_is_on_around_the_next_exposure(void **state)
+{
+    (void)state;
+    signal_lines lines = {0};
+    const gpio_settings wanted = {.strobe = "0:5"};
+    const int64_t first_ns = camera_clock_ns();
+    const camera_frame before = {.image = {.time_ns = first_ns - 200 * ms}, .exposure_us = 20000};
+    const camera_frame got = {.image = {.time_ns = first_ns}, .dropped = 1, .exposure_us = 20000};
+    signal_lines_open(&lines, &wanted);
+    signal_lines_foretell(&lines, &before, first_ns - 170 * ms);
+    assert_int_equal(fake.sets, 0);
+    signal_lines_foretell(&lines, &got, first_ns + 30 * ms);
+    sleep_until(first_ns + 160 * ms);
+    signal_lines_close(&lines);
+    const int64_t next_ns = first_ns + 100 * ms, tolerance_ns = 25 * ms;
+    assert_in_range(fake.on_ns, next_ns - 11 * ms, next_ns - 10 * ms + tolerance_ns);
+    assert_in_range(fake.off_ns, next_ns + 10 * ms, next_ns + 10 * ms + tolerance_ns);
+    assert_false(fake.on);
+    assert_int_equal(fake.sets, 2);
+}
+
+static void strobe_ends_with_the_line_off(void **state)
+{
+    (void)state;
+    error_text error;
+    strobe *flash = strobe_open((gpio_output *)(void *)&memory, &error);
+    assert_non_null(flash);
+    const int64_t now_ns = camera_clock_ns();
+    strobe_plan(flash, now_ns, now_ns + 60000 * ms);
+    sleep_until(now_ns + 50 * ms);
+    strobe_close(flash);
+    assert_true(camera_clock_ns() < now_ns + 5000 * ms);
+    assert_true(fake.on_ns > 0 && fake.off_ns >= fake.on_ns);
+    assert_false(fake.on);
+    assert_int_equal(fake.closed, 1);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(lines_that_are_not_named_cost_nothing, begin),
+        cmocka_unit_test_setup(seen_is_shown_and_lines_are_given_back, begin),
+        cmocka_unit_test_setup(line_that_fails_is_counted, begin),
+        cmocka_unit_test_setup(strobe_is_on_around_the_next_exposure, begin),
+        cmocka_unit_test_setup(strobe_ends_with_the_line_off, begin),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,24 @@
+/* Whether records are those of data/walk.y4m, played over and over, and nothing else. Records may be missing: how
+ * many is for the caller to judge. */
+#ifndef WALK_CHECK_H
+#define WALK_CHECK_H
+
+#include "truth.h"
+
+enum { WALK_FRAMES = 24 };
+
+typedef struct walk_check {
+    const truth *walk;
+    uint64_t frames, cms, tms, places;
+    uint64_t wrong;       /* records that say what is not so */
+    uint64_t incomplete;  /* frames of which records are missing */
+    uint64_t dropped;     /* frames, as FRAMEs tell */
+    uint64_t position;    /* of the last FRAME in the endless walk, from 1 */
+    uint16_t seq;
+    unsigned expected;    /* records of the last FRAME that are still to come */
+    char complaint[200];  /* about the first wrong one */
+} walk_check;
+
+void walk_check_record(walk_check *check, const tapemark_record *record);
+
+#endif
