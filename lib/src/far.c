@@ -170,17 +170,19 @@ static float height_of(const tapemark_point corners[4])
 /* Near tapes are read one finder pattern after the other; that is as good as it gets from this height on, px. */
 static const float near_px = 10.5f;
 
-/* Whether what was read at this place leaves nothing to be found by a stripe of this height: a TM, or a CM that is
- * near, or much higher. */
+/* Whether a marker of this height leaves nothing to be found by a stripe of that height: a TM, or a CM that is near,
+ * or much higher. */
+static bool settles(bool is_tm, float marker_height, float height)
+{
+    return is_tm || marker_height > near_px || marker_height > 1.5f * height;
+}
+
+/* Whether what was read at this place leaves nothing to be found by a stripe of this height. */
 static bool is_read(const tapemark_result *result, tmi_point at, float height)
 {
-    for (size_t i = 0; i < result->cm_count; i++) {
-        if (!holds(result->cms[i].corners, at))
-            continue;
-        const float cm_height = height_of(result->cms[i].corners);
-        if (cm_height > near_px || cm_height > 1.5f * height)
+    for (size_t i = 0; i < result->cm_count; i++)
+        if (holds(result->cms[i].corners, at) && settles(false, height_of(result->cms[i].corners), height))
             return true;
-    }
     for (size_t i = 0; i < result->tm_count; i++)
         if (holds(result->tms[i].corners, at))
             return true;
@@ -199,16 +201,37 @@ static bool is_covered(const tapemark_result *result, const tmi_stripe *stripe)
     return inside > 2;
 }
 
-/* Leaves out the strokes of markers that were read. */
-static void drop_read(const tapemark_result *result, tmi_strokes *strokes)
+/* Leaves out the strokes on a marker that was read. */
+static void drop_on_marker(const tapemark_point corners[4], bool is_tm, tmi_strokes *strokes)
 {
+    const float height = height_of(corners);
+    float left = corners[0].x_px, right = left, top = corners[0].y_px, bottom = top;
+    for (int i = 1; i < 4; i++) {
+        left = real_min(left, corners[i].x_px);
+        right = real_max(right, corners[i].x_px);
+        top = real_min(top, corners[i].y_px);
+        bottom = real_max(bottom, corners[i].y_px);
+    }
     int kept = 0;
     for (int i = 0; i < strokes->count; i++) {
         const tmi_stroke *s = &strokes->at[i];
-        if (!is_read(result, tmi_stroke_at(s), tmi_stroke_width(s)))
-            strokes->at[kept++] = *s;
+        const tmi_point at = tmi_stroke_at(s);
+        if (at.x > left && at.x < right && at.y > top && at.y < bottom && holds(corners, at) &&
+            settles(is_tm, height, tmi_stroke_width(s)))
+            continue;
+        if (kept < i)
+            strokes->at[kept] = *s;
+        kept++;
     }
     strokes->count = kept;
+}
+
+static void drop_read(const tapemark_result *result, tmi_strokes *strokes)
+{
+    for (size_t i = 0; i < result->cm_count; i++)
+        drop_on_marker(result->cms[i].corners, false, strokes);
+    for (size_t i = 0; i < result->tm_count; i++)
+        drop_on_marker(result->tms[i].corners, true, strokes);
 }
 
 /* Makes the stripe as long as the row, so that the wave is sampled around it. */

@@ -29,20 +29,18 @@ static int gray(const scan_line *scan, int32_t i)
 /* Where the signal passes `twice_level` / 2, near the place at which its rise or fall was noticed. */
 static float crossing(const scan_line *scan, int32_t from, bool rising, int twice_level)
 {
+    /* Falling is rising with all values inverted. */
+    const int flip = rising ? scan->invert : scan->invert ^ 255;
+    const int level = rising ? twice_level : 510 - twice_level;
+    const ptrdiff_t step = scan->step;
+    const uint8_t *p = scan->pixels + from * step;
     int32_t i = from;
-    if (rising) {
-        while (2 * gray(scan, i) < twice_level)
-            i++;
-        while (2 * gray(scan, i - 1) >= twice_level)
-            i--;
-    } else {
-        while (2 * gray(scan, i) > twice_level)
-            i++;
-        while (2 * gray(scan, i - 1) <= twice_level)
-            i--;
-    }
-    const float here = (float)gray(scan, i), before = (float)gray(scan, i - 1);
-    return (float)i - (here - 0.5f * (float)twice_level) / (here - before);
+    for (; 2 * (*p ^ flip) < level; p += step)
+        i++;
+    for (; 2 * (p[-step] ^ flip) >= level; p -= step)
+        i--;
+    const int here = *p ^ flip, before = p[-step] ^ flip;
+    return (float)i - 0.5f * (float)(2 * here - level) / (float)(here - before);
 }
 
 /* Five runs, dark first, in the proportion 1:1:3:1:1. The bounds are wide because a blurred ring of one pixel
@@ -121,7 +119,6 @@ static int32_t next_turn(const scan_line *scan, int32_t from, int32_t end, int l
     const ptrdiff_t step = scan->step;
     int most = *extreme;
     int32_t i = from;
-    /* Falling is rising with all values inverted. */
     const int flip = scan->rising ? scan->invert : scan->invert ^ 255;
     most = scan->rising ? most : 255 - most;
     for (; i < end; i++, p += step) {

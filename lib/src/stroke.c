@@ -53,9 +53,9 @@ void tmi_strokes_add(tmi_strokes *strokes, int32_t line, bool vertical, float fr
 
 /* ---- Chains ---------------------------------------------------------------------------------------------------- */
 
-static uint32_t order(const tmi_stroke *s)
+static int32_t order(const tmi_stroke *s)
 {
-    return (uint32_t)s->line + (s->vertical ? 65536u : 0u);
+    return s->line + (s->vertical ? 65536 : 0);
 }
 
 /* Shell's sort: by pass, then by line. */
@@ -66,18 +66,25 @@ static void sort(tmi_strokes *strokes)
     for (int s = 0; s < 6; s++)
         for (int i = steps[s]; i < strokes->count; i++) {
             const tmi_stroke moved = at[i];
+            const int32_t place = order(&moved);
             int j = i;
-            for (; j >= steps[s] && order(&at[j - steps[s]]) > order(&moved); j -= steps[s])
+            for (; j >= steps[s] && order(&at[j - steps[s]]) > place; j -= steps[s])
                 at[j] = at[j - steps[s]];
             at[j] = moved;
         }
 }
 
+/* Chains run within 49 degrees of the axis that their scan lines cross: by no more than this many 1/16 px a px. */
+enum { STEEPEST = 18 };
+
 /* Whether b, further on, may follow the chain that a ends. From one finder pattern to the next there may be nothing
  * but a light CM: 25 modules, where the stroke has seven. Where the direction is known, one finder may be missing. */
 static bool may_follow(const tmi_stroke *at, const tmi_stroke *a, const tmi_stroke *b, float *error)
 {
-    const int dx = b->line - a->line, widths = a->width + b->width, change = a->width - b->width; /* 1/8 px */
+    const int dx = b->line - a->line, drift = b->centre - a->centre, drift_max = dx * STEEPEST / 16 + 4;
+    if (drift > drift_max || -drift > drift_max)
+        return false;
+    const int widths = a->width + b->width, change = a->width - b->width; /* 1/8 px */
     const int slack = widths / 10 + 5, reach = (a->count < 3 ? 4 : 7) * widths / 16 + 4;
     if (dx > reach || change > slack || -change > slack || a->contrast > 3 * b->contrast ||
         b->contrast > 3 * a->contrast)
@@ -85,37 +92,40 @@ static bool may_follow(const tmi_stroke *at, const tmi_stroke *a, const tmi_stro
     const float dy = tmi_stroke_centre(b) - tmi_stroke_centre(a), go = (float)dx;
     *error = 0.2f * real_abs(dy);
     if (a->count < 2)
-        return real_abs(dy) <= 1.15f * go;
+        return 16 * real_abs(dy) <= STEEPEST * go;
     const tmi_stroke *first = &at[a->first];
     const float base = (float)(a->line - first->line);
     *error = real_abs(dy - (tmi_stroke_centre(a) - tmi_stroke_centre(first)) / base * go);
     return *error <= (0.5f + 0.1f / 16 * (float)widths) * (1 + go / base);
 }
 
+/* Joins stroke i to the longest chain that it may follow, or else to the straightest one of those. */
+static void join_chain(tmi_stroke *at, int i)
+{
+    tmi_stroke *s = &at[i];
+    s->count = 1;
+    s->first = (int16_t)i;
+    s->before = -1;
+    float least = 0;
+    const int line_min = s->line - s->width - 6; /* 7.5 widths, and what rounding takes */
+    for (int j = i - 1; j >= 0 && at[j].vertical == s->vertical && at[j].line >= line_min; j--) {
+        const int count = at[j].count < 255 ? at[j].count + 1 : 255;
+        float error;
+        if (count < s->count || at[j].line == s->line || !may_follow(at, &at[j], s, &error) ||
+            (count == s->count && error >= least))
+            continue;
+        s->count = (uint8_t)count;
+        s->first = at[j].first;
+        s->before = (int16_t)j;
+        least = error;
+    }
+}
+
 void tmi_strokes_chain(tmi_strokes *strokes)
 {
     sort(strokes);
-    tmi_stroke *at = strokes->at;
-    for (int i = 0; i < strokes->count; i++) {
-        tmi_stroke *s = &at[i];
-        s->count = 1;
-        s->first = (int16_t)i;
-        s->before = -1;
-        float least = 0;
-        const uint32_t reach = (uint32_t)(7.5f * tmi_stroke_width(s)) + 6;
-        for (int j = i - 1; j >= 0 && order(&at[j]) + reach >= order(s); j--) {
-            float error;
-            if (at[j].line == s->line || at[j].vertical != s->vertical || !may_follow(at, &at[j], s, &error))
-                continue;
-            const int count = at[j].count < 255 ? at[j].count + 1 : 255;
-            if (count < s->count || (count == s->count && error >= least))
-                continue;
-            s->count = (uint8_t)count;
-            s->first = at[j].first;
-            s->before = (int16_t)j;
-            least = error;
-        }
-    }
+    for (int i = 0; i < strokes->count; i++)
+        join_chain(strokes->at, i);
 }
 
 /* ---- Stripes --------------------------------------------------------------------------------------------------- */
