@@ -148,8 +148,7 @@ static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
                          real_abs(turn) > turn_min ? turn : 0, least_px > words_px);
 }
 
-/* ---- Stripes ----------------------------------------------------------------------------------------------------
- */
+/* ---- Stripes ------------------------------------------------------------------------------------------------- */
 
 static bool holds(const tapemark_point corners[4], tmi_point at)
 {

@@ -90,8 +90,7 @@ bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_r
     return true;
 }
 
-/* ---- What finders show inside
- * ---------------------------------------------------------------------------------------- */
+/* ---- What finders show inside -------------------------------------------------------------------------------- */
 
 /* A line of 2 h modules around 0, blurred. */
 static float bar(float x, float h, float reach)

@@ -5,8 +5,7 @@
 
 enum { PITCH = TAPEMARK_CM_PITCH_MODULES, HEIGHT = TAPEMARK_HEIGHT_MODULES };
 
-/* ---- Sampling ----------------------------------------------------------------------------------------------------
- */
+/* ---- Sampling ------------------------------------------------------------------------------------------------ */
 
 void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, float reach, float step, tmi_wave *wave,
                      uint32_t *reads)
@@ -28,8 +27,7 @@ void tmi_wave_sample(const tmi_view *view, const tmi_stripe *stripe, float reach
     *reads += (uint32_t)(HEIGHT * wave->count);
 }
 
-/* ---- First look
- * ------------------------------------------------------------------------------------------------------ */
+/* ---- First look ---------------------------------------------------------------------------------------------- */
 
 static void sum_up(const tmi_wave *wave, tmi_wave_sums *sums)
 {
