@@ -126,13 +126,11 @@ int64_t camera_normal_time_ns(int64_t device_time_ns)
 {
     const int64_t credible_ns = INT64_C(10) * 1000 * 1000 * 1000;
     int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-    int64_t slept_ns = clock_ns(CLOCK_BOOTTIME) - now_ns;
-
-    if (device_time_ns <= now_ns && device_time_ns > now_ns - credible_ns)
-        return device_time_ns;
-    if (device_time_ns > now_ns && device_time_ns - now_ns <= slept_ns)
-        return device_time_ns - slept_ns;
-    return now_ns;
+    int64_t awake_time_ns = device_time_ns;
+    if (device_time_ns > now_ns)
+        awake_time_ns -= clock_ns(CLOCK_BOOTTIME) - now_ns;
+    bool credible = awake_time_ns <= now_ns && awake_time_ns > now_ns - credible_ns;
+    return credible ? awake_time_ns : now_ns;
 }
 
 int camera_left_ms(int64_t deadline_ns)

@@ -2,7 +2,7 @@
 #include "camera_backend.h"
 #include "file_formats.h"
 #include "input_list.h"
-#include "recording.h"
+#include "played_input.h"
 
 #include <errno.h>
 #include <math.h>
@@ -34,8 +34,7 @@ typedef struct file_camera {
     size_t input;            /* that is read from */
     bool headless;
     frame_layout layout;     /* of headless frames */
-    frame_source *source;    /* NULL between two inputs */
-    recording_times *times;  /* NULL where there are none */
+    played_input playing;    /* closed between two inputs */
     pace pace;
     double rate_hz;
     int timer;               /* readable from the time on that the next frame is due */
@@ -54,12 +53,6 @@ typedef struct file_camera {
 
 /* ---- Reading ahead -------------------------------------------------------------------------------------- */
 
-static bool is_y4m(const char *path)
-{
-    size_t length = strlen(path);
-    return length >= 4 && strcmp(path + length - 4, ".y4m") == 0;
-}
-
 static camera_status fail(file_camera *self, const char *reason)
 {
     if (self->inputs.count > 1)
@@ -72,44 +65,27 @@ static camera_status fail(file_camera *self, const char *reason)
 static camera_status open_input(file_camera *self)
 {
     error_text reason;
-    const char *path = self->inputs.files[self->input].path;
-    if (!recording_times_open(path, &self->times, &reason))
-        return fail(self, reason.text);
-    const frame_layout *layout = self->inputs.files[self->input].raw ? &self->layout : NULL;
-    if (layout == NULL && self->times != NULL && !is_y4m(path))
-        layout = recording_times_layout(self->times);
-    self->source = frame_source_open_file(path, layout, &reason);
+    const input_file *file = &self->inputs.files[self->input];
     self->source_has_begun = false;
-    return self->source != NULL ? CAMERA_FRAME : fail(self, reason.text);
-}
-
-static void close_input(file_camera *self)
-{
-    frame_source_close(self->source);
-    recording_times_close(self->times);
-    self->source = NULL;
-    self->times = NULL;
+    if (!played_input_open(&self->playing, file->path, file->raw ? &self->layout : NULL, &reason))
+        return fail(self, reason.text);
+    return CAMERA_FRAME;
 }
 
 /* The next frame of this input; CAMERA_END at its end. */
 static camera_status read_frame(file_camera *self)
 {
     error_text reason;
-    times_status known = TIMES_FRAME;
-    if (self->times != NULL)
-        known = recording_times_next(self->times, &self->next_one.recorded, &reason);
-    if (known == TIMES_END)
+    switch (played_input_next(&self->playing, self->frame_count, &self->next_one.image, &self->next_one.recorded,
+                              &reason)) {
+    case FRAME_READY:
+        return CAMERA_FRAME;
+    case FRAME_END:
         return CAMERA_END;
-    if (known == TIMES_FAILED)
-        return fail(self, reason.text);
-    frame_status status = frame_source_next(self->source, &self->next_one.image, &reason);
-    if (status == FRAME_FAILED)
-        return fail(self, reason.text);
-    if (status == FRAME_END)
-        return CAMERA_END;
-    if (self->times == NULL)
-        self->next_one.recorded = (recorded_frame){self->frame_count, self->next_one.image.time_ns, 0};
-    return CAMERA_FRAME;
+    case FRAME_FAILED:
+        break;
+    }
+    return fail(self, reason.text);
 }
 
 /* When a frame is due by its recorded time, counted from the first one of its input, which comes a period after the
@@ -160,13 +136,13 @@ static void arm_timer(const file_camera *self)
 static void read_ahead(file_camera *self)
 {
     do {
-        if (self->source == NULL)
+        if (self->playing.source == NULL)
             self->ahead = self->input < self->inputs.count ? open_input(self) : CAMERA_END;
-        if (self->source == NULL)
+        if (self->playing.source == NULL)
             break;
         self->ahead = read_frame(self);
         if (self->ahead == CAMERA_END) {
-            close_input(self);
+            played_input_close(&self->playing);
             self->input++;
         }
     } while (self->ahead == CAMERA_END);
@@ -314,7 +290,7 @@ static int descriptor(const camera *base)
 static void close_camera(camera *base)
 {
     file_camera *self = (file_camera *)base;
-    close_input(self);
+    played_input_close(&self->playing);
     input_list_release(&self->inputs);
     free(self->copy.bytes);
     if (self->timer >= 0)

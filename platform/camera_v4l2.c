@@ -3,6 +3,7 @@
 #include "jpeg_frame.h"
 #include "v4l2_device.h"
 #include "v4l2_stream.h"
+#include "v4l2_times.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -25,7 +26,9 @@ typedef struct v4l2_camera {
     int failures;             /* in a row */
     int64_t last_stamp_ns;
     uint32_t last_sequence;
-    int64_t shortest_way_ns;  /* from a frame's time stamp until it was taken, about the least there is */
+    v4l2_delay delay;
+    bool refused;             /* the frame before was too old: the next one is as new as it gets */
+    bool promised;            /* poll() found a buffer ready */
     jpeg_frame jpeg;
 } v4l2_camera;
 
@@ -68,7 +71,9 @@ static bool start(v4l2_camera *self, error_text *error)
     self->had_to_fill = self->stream.with_driver;
     self->failures = 0;
     self->last_stamp_ns = 0;
-    self->shortest_way_ns = INT64_MAX;
+    self->refused = false;
+    self->promised = false;
+    v4l2_delay_begin(&self->delay);
     camera_restart_numbers(&self->base);
     return true;
 }
@@ -133,21 +138,11 @@ static bool is_whole(const v4l2_camera *self, const struct v4l2_buffer *buffer)
     return buffer->bytesused >= frame_layout_size_bytes(&self->picture.layout);
 }
 
-static int64_t stamp_of(const struct v4l2_buffer *buffer)
-{
-    const int64_t seconds_max = INT64_MAX / 1000000000 - 1;
-    if ((buffer->flags & V4L2_BUF_FLAG_TIMESTAMP_MASK) != V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC ||
-        buffer->timestamp.tv_sec < 0 || buffer->timestamp.tv_sec > seconds_max)
-        return camera_clock_ns();
-    return camera_normal_time_ns((int64_t)buffer->timestamp.tv_sec * 1000000000 +
-                                 (int64_t)(buffer->timestamp.tv_usec % 1000000) * 1000);
-}
-
 /* A driver that is stuck may show the last frame again. */
 static bool is_repeated(const v4l2_camera *self, const struct v4l2_buffer *buffer)
 {
     return self->base.numbers.any && buffer->sequence == self->last_sequence &&
-           stamp_of(buffer) == self->last_stamp_ns;
+           v4l2_stamp_ns(buffer) == self->last_stamp_ns;
 }
 
 /* CAMERA_FRAME: the driver has given back a buffer, whatever is in it; CAMERA_TIMEOUT: it has none. */
@@ -211,39 +206,17 @@ static int64_t frame_time_ns(const v4l2_camera *self)
     return rate_hz > 0 ? (int64_t)(1e9 / rate_hz) : 0;
 }
 
-/* Drivers that always keep a buffer are never seen to starve: there a frame counts as old when it took much longer
- * than others to get here. What "others" took may grow slowly. */
-static bool is_old(v4l2_camera *self, const struct v4l2_buffer *buffer)
-{
-    int64_t period_ns = frame_time_ns(self);
-    int64_t way_ns = camera_clock_ns() - stamp_of(buffer);
-    if (self->shortest_way_ns == INT64_MAX || way_ns < self->shortest_way_ns)
-        self->shortest_way_ns = way_ns;
-    else
-        self->shortest_way_ns += period_ns / 64;
-    return period_ns > 0 && way_ns > self->shortest_way_ns + period_ns + period_ns / 2;
-}
-
-/* Stamps are of the start of the exposure or of the end of the frame; then its middle row was read out half a frame
- * time ago, when cameras read out as slowly as their rate allows. */
-static int64_t middle_of_exposure_ns(const v4l2_camera *self, const struct v4l2_buffer *buffer)
-{
-    int64_t half_exposure_ns = (int64_t)self->base.settings.exposure_us * 500;
-    if ((buffer->flags & V4L2_BUF_FLAG_TSTAMP_SRC_MASK) == V4L2_BUF_FLAG_TSTAMP_SRC_SOE)
-        return stamp_of(buffer) + half_exposure_ns;
-    return stamp_of(buffer) - frame_time_ns(self) / 2 - half_exposure_ns;
-}
-
 /* Readies the frame; CAMERA_TIMEOUT when there is none in it after all. */
 static camera_status hand_out(v4l2_camera *self, const struct v4l2_buffer *buffer, camera_frame *output,
                               error_text *error)
 {
     const frame_layout *layout = &self->picture.layout;
     const uint8_t *bytes = self->stream.buffers[buffer->index].bytes;
-    self->last_stamp_ns = stamp_of(buffer);
+    self->last_stamp_ns = v4l2_stamp_ns(buffer);
     self->last_sequence = buffer->sequence;
     output->exposure_us = self->base.settings.exposure_us;
-    output->image = (frame){*layout, bytes, 0, middle_of_exposure_ns(self, buffer)};
+    output->image = (frame){*layout, bytes, 0, v4l2_middle_of_exposure_ns(buffer, frame_time_ns(self),
+                                                                           output->exposure_us)};
     self->held = (int)buffer->index;
 
     if (self->base.settings.mode.jpeg) {
@@ -271,28 +244,50 @@ static bool picture_has_changed(v4l2_camera *self)
            (event.u.src_change.changes & V4L2_EVENT_SRC_CH_RESOLUTION) != 0;
 }
 
-/* CAMERA_FRAME: it is worth looking again. */
+/* CAMERA_FRAME: it is worth looking again. When there is no time left, what is wrong is noticed all the same. */
 static camera_status wait_for_buffer(v4l2_camera *self, int64_t deadline_ns, error_text *error)
 {
     struct pollfd waiting = {.fd = self->device.descriptor, .events = POLLIN | POLLPRI};
     int left_ms = camera_left_ms(deadline_ns);
-    if (left_ms == 0)
-        return CAMERA_TIMEOUT;
+    camera_status status = left_ms > 0 ? CAMERA_FRAME : CAMERA_TIMEOUT;
     int ready = poll(&waiting, 1, left_ms);
+    self->promised = ready > 0 && (waiting.revents & POLLIN) != 0;
     if (ready == 0)
         return CAMERA_TIMEOUT;
     if (ready < 0)
-        return errno == EINTR ? CAMERA_FRAME : explain_failure(self, errno, error);
+        return errno == EINTR ? status : explain_failure(self, errno, error);
     if (waiting.revents & POLLPRI && picture_has_changed(self)) {
         error_text_set(error, "has changed the size of its picture");
         return CAMERA_FAILED;
     }
-    if (!(waiting.revents & POLLIN) && waiting.revents & (POLLERR | POLLHUP | POLLNVAL)) {
+    if (!self->promised && waiting.revents & (POLLERR | POLLHUP | POLLNVAL)) {
+        camera_status borne = bear_failure(self, error);
+        if (borne != CAMERA_TIMEOUT)
+            return borne;
         poll(NULL, 0, left_ms < 10 ? left_ms : 10);
-        camera_status status = bear_failure(self, error);
-        return status == CAMERA_TIMEOUT ? CAMERA_FRAME : status;
     }
-    return CAMERA_FRAME;
+    return status;
+}
+
+/* CAMERA_FRAME: a frame that is as new as can be had, in `buffer`. */
+static camera_status choose_frame(v4l2_camera *self, bool just_asked, struct v4l2_buffer *buffer, error_text *error)
+{
+    const int breath_ms = 1;
+    bool starved = false;
+    camera_status status = take_newest(self, buffer, &starved, error);
+    if (status == CAMERA_FRAME) {
+        bool old = v4l2_delay_is_old(&self->delay, buffer, frame_time_ns(self));
+        bool refused_before = self->refused;
+        self->refused = just_asked && (starved || (old && !refused_before));
+        if (self->refused)
+            status = pass_over(self, buffer->index, error);
+        else if (old)
+            v4l2_delay_accept(&self->delay, buffer);
+    } else if (status == CAMERA_TIMEOUT && self->promised) {
+        /* Whoever asks as often as poll() promises something would be busy with nothing. */
+        poll(NULL, 0, breath_ms);
+    }
+    return status;
 }
 
 static camera_status next(camera *base, int timeout_ms, camera_frame *output, error_text *error)
@@ -308,15 +303,9 @@ static camera_status next(camera *base, int timeout_ms, camera_frame *output, er
     }
     do {
         struct v4l2_buffer buffer = {0};
-        bool starved;
-        status = take_newest(self, &buffer, &starved, error);
-        if (status == CAMERA_FRAME) {
-            bool old = is_old(self, &buffer);
-            if (just_asked && (starved || old))
-                status = pass_over(self, buffer.index, error);
-            else
-                status = hand_out(self, &buffer, output, error);
-        }
+        status = choose_frame(self, just_asked, &buffer, error);
+        if (status == CAMERA_FRAME)
+            status = hand_out(self, &buffer, output, error);
         just_asked = false;
         self->had_to_fill = self->stream.with_driver;
         if (status == CAMERA_TIMEOUT && self->stream.with_driver == 0) {

@@ -6,8 +6,6 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { EVENTS_AT_ONCE = 16 };
-
 struct gpio_request {
     struct gpiod_chip *chip;  /* a line lives as long as its chip */
     struct gpiod_line *line;
@@ -95,10 +93,13 @@ int gpio_request_descriptor(const gpio_request *request)
     return gpiod_line_event_get_fd(request->line);
 }
 
-int gpio_request_read_events(gpio_request *request)
+int gpio_request_read_events(gpio_request *request, int64_t times_ns[GPIO_EVENTS_MAX])
 {
-    struct gpiod_line_event events[EVENTS_AT_ONCE];
-    return gpiod_line_event_read_multiple(request->line, events, EVENTS_AT_ONCE);
+    struct gpiod_line_event events[GPIO_EVENTS_MAX];
+    int count = gpiod_line_event_read_multiple(request->line, events, GPIO_EVENTS_MAX);
+    for (int i = 0; i < count; i++)
+        times_ns[i] = (int64_t)events[i].ts.tv_sec * 1000000000 + events[i].ts.tv_nsec;
+    return count;
 }
 
 void gpio_request_release(gpio_request *request)

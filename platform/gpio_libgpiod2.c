@@ -5,8 +5,6 @@
 #include <gpiod.h>
 #include <stdlib.h>
 
-enum { EVENTS_AT_ONCE = 16 };
-
 struct gpio_chip {
     struct gpiod_chip *handle;
     struct gpiod_chip_info *info;
@@ -105,7 +103,7 @@ gpio_request *gpio_request_line(gpio_chip *chip, unsigned line, const gpio_line_
     gpio_request *request = calloc(1, sizeof *request);
     if (request != NULL) {
         request->line = line;
-        request->events = gpiod_edge_event_buffer_new(EVENTS_AT_ONCE);
+        request->events = gpiod_edge_event_buffer_new(GPIO_EVENTS_MAX);
         request->handle = request->events != NULL ? request_handle(chip, line, wish) : NULL;
     }
     int reason = errno;
@@ -130,9 +128,14 @@ int gpio_request_descriptor(const gpio_request *request)
     return gpiod_line_request_get_fd(request->handle);
 }
 
-int gpio_request_read_events(gpio_request *request)
+int gpio_request_read_events(gpio_request *request, int64_t times_ns[GPIO_EVENTS_MAX])
 {
-    return gpiod_line_request_read_edge_events(request->handle, request->events, EVENTS_AT_ONCE);
+    int count = gpiod_line_request_read_edge_events(request->handle, request->events, GPIO_EVENTS_MAX);
+    for (int i = 0; i < count; i++) {
+        struct gpiod_edge_event *event = gpiod_edge_event_buffer_get_event(request->events, (unsigned long)i);
+        times_ns[i] = (int64_t)gpiod_edge_event_get_timestamp_ns(event);
+    }
+    return count;
 }
 
 void gpio_request_release(gpio_request *request)

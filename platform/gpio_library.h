@@ -3,6 +3,10 @@
 #define PLATFORM_GPIO_LIBRARY_H
 
 #include <stdbool.h>
+#include <stdint.h>
+
+/* As many as the kernel keeps of a line. */
+enum { GPIO_EVENTS_MAX = 16 };
 
 typedef enum gpio_pull { GPIO_PULL_NONE, GPIO_PULL_UP, GPIO_PULL_DOWN } gpio_pull;
 
@@ -30,8 +34,8 @@ void gpio_chip_close(gpio_chip *chip);
 gpio_request *gpio_request_line(gpio_chip *chip, unsigned line, const gpio_line_wish *wish);
 bool gpio_request_set(gpio_request *request, bool on);
 int gpio_request_descriptor(const gpio_request *request);
-/* Reads at least one event, and waits for that; the number read, or -1. */
-int gpio_request_read_events(gpio_request *request);
+/* Reads when the line went on, of as many events as there are, and waits for the first; the number read, or -1. */
+int gpio_request_read_events(gpio_request *request, int64_t times_ns[GPIO_EVENTS_MAX]);
 void gpio_request_release(gpio_request *request);
 
 #endif

@@ -17,7 +17,9 @@ struct gpio_output {
 };
 
 struct gpio_input {
-    gpio_request *request;
+    gpio_request *request;  /* likewise */
+    bool has_gone_on;
+    int64_t last_on_ns;
 };
 
 typedef struct line_name {
@@ -27,35 +29,44 @@ typedef struct line_name {
     gpio_pull pull;
 } line_name;
 
-/* Takes what is before the next colon, or all that is left; its length, 0 also when it does not fit. */
-static size_t take_part(const char **rest, char *part)
+/* Takes what is before the next colon, or all that is left. False when that is nothing, or does not fit. */
+static bool take_part(const char **rest, char *part)
 {
     size_t length = strcspn(*rest, ":");
-    bool fits = length < PART_MAX_BYTES;
-    memcpy(part, *rest, fits ? length : 0);
-    part[fits ? length : 0] = '\0';
+    if (length == 0 || length >= PART_MAX_BYTES)
+        return false;
+    memcpy(part, *rest, length);
+    part[length] = '\0';
     *rest += length;
-    if (**rest == ':')
-        (*rest)++;
-    return fits ? length : 0;
+    return true;
+}
+
+/* Each option at most once, and one pull. */
+static bool take_option(const char *option, line_name *parsed)
+{
+    bool was_low = parsed->on_when_low, was_pulled = parsed->pull != GPIO_PULL_NONE;
+    if (strcmp(option, "low") == 0) {
+        parsed->on_when_low = true;
+        return !was_low;
+    }
+    if (strcmp(option, "pull-up") == 0)
+        parsed->pull = GPIO_PULL_UP;
+    else if (strcmp(option, "pull-down") == 0)
+        parsed->pull = GPIO_PULL_DOWN;
+    else
+        return false;
+    return !was_pulled;
 }
 
 static bool parse_name(const char *name, line_name *parsed, error_text *error)
 {
-    char part[PART_MAX_BYTES];
+    char option[PART_MAX_BYTES];
     const char *rest = name;
     *parsed = (line_name){.pull = GPIO_PULL_NONE};
-    bool valid = take_part(&rest, parsed->chip) > 0 && take_part(&rest, parsed->line) > 0;
-    while (valid && *rest != '\0') {
-        take_part(&rest, part);
-        if (strcmp(part, "low") == 0)
-            parsed->on_when_low = true;
-        else if (strcmp(part, "pull-up") == 0)
-            parsed->pull = GPIO_PULL_UP;
-        else if (strcmp(part, "pull-down") == 0)
-            parsed->pull = GPIO_PULL_DOWN;
-        else
-            valid = false;
+    bool valid = take_part(&rest, parsed->chip) && *rest++ == ':' && take_part(&rest, parsed->line);
+    while (valid && *rest == ':') {
+        rest++;
+        valid = take_part(&rest, option) && take_option(option, parsed);
     }
     if (!valid)
         error_text_set(error, "%.150s is no GPIO line: it takes CHIP:LINE, such as gpiochip0:17, and after it :low, "
@@ -243,16 +254,30 @@ int gpio_input_descriptor(const gpio_input *line)
     return line->request != NULL ? gpio_request_descriptor(line->request) : -1;
 }
 
+static unsigned count_without_bounces(gpio_input *line, const int64_t *times_ns, int events)
+{
+    const int64_t bounce_ns = 50000000;
+    unsigned count = 0;
+    for (int i = 0; i < events; i++) {
+        int64_t since_ns = times_ns[i] - line->last_on_ns;
+        count += !line->has_gone_on || since_ns < 0 || since_ns >= bounce_ns;
+        line->has_gone_on = true;
+        line->last_on_ns = times_ns[i];
+    }
+    return count;
+}
+
 /* One reading a call is enough: what is left makes poll() return at once. */
 bool gpio_input_events(gpio_input *line, unsigned *count, error_text *error)
 {
+    int64_t times_ns[GPIO_EVENTS_MAX];
     struct pollfd look = {gpio_input_descriptor(line), POLLIN, 0};
     *count = 0;
     if (line->request == NULL || poll(&look, 1, 0) <= 0)
         return true;
-    int events = (look.revents & POLLIN) != 0 ? gpio_request_read_events(line->request) : -1;
+    int events = (look.revents & POLLIN) != 0 ? gpio_request_read_events(line->request, times_ns) : -1;
     if (events >= 0) {
-        *count = (unsigned)events;
+        *count = count_without_bounces(line, times_ns, events);
         return true;
     }
     error_text_set(error, "a GPIO line can no longer be read: %s",

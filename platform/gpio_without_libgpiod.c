@@ -68,9 +68,10 @@ int gpio_request_descriptor(const gpio_request *request)
     return -1;
 }
 
-int gpio_request_read_events(gpio_request *request)
+int gpio_request_read_events(gpio_request *request, int64_t times_ns[GPIO_EVENTS_MAX])
 {
     (void)request;
+    (void)times_ns;
     return -1;
 }
 

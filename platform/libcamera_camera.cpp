@@ -207,6 +207,7 @@ bool libcamera_camera::start(const camera_wishes &wishes, error_text *error)
     settings.gain = wishes.gain;
     settings.region = wishes.region;
     camera_restart_numbers(this);
+    last_sign_ns_ = camera_clock_ns();
     if (camera_->start(&list) != 0) {
         error_text_set(error, "does not start");
         return false;
@@ -222,9 +223,11 @@ bool libcamera_camera::start(const camera_wishes &wishes, error_text *error)
 bool libcamera_camera::is_gone_for_sure()
 {
     constexpr std::chrono::seconds time_to_hear(3);
+    constexpr int64_t silence_ns = 500000000;
     std::unique_lock<std::mutex> lock(guard_);
-    if (silent_)
-        changed_.wait_for(lock, time_to_hear, [this] { return gone_ || latest_ != nullptr; });
+    const int64_t last_sign_ns = last_sign_ns_;
+    if (camera_clock_ns() - last_sign_ns > silence_ns)
+        changed_.wait_for(lock, time_to_hear, [this, last_sign_ns] { return gone_ || last_sign_ns_ != last_sign_ns; });
     return gone_;
 }
 
@@ -236,7 +239,6 @@ void libcamera_camera::stop()
     if (running_ && !is_gone_for_sure())
         camera_->stop();
     running_ = false;
-    silent_ = false;
     held_ = nullptr;
     latest_ = nullptr;
     requests_.clear();
@@ -297,6 +299,8 @@ void libcamera_camera::completed(libcamera::Request *request)
     if (request->status() == libcamera::Request::RequestCancelled)
         return;
     std::lock_guard<std::mutex> lock(guard_);
+    last_sign_ns_ = camera_clock_ns();
+    changed_.notify_one();
     if (buffers_.buffer(request->cookie())->metadata().status != libcamera::FrameMetadata::FrameSuccess) {
         damaged_++;
         passed_over_++;
@@ -308,7 +312,6 @@ void libcamera_camera::completed(libcamera::Request *request)
         queue(latest_);
     }
     latest_ = request;
-    changed_.notify_one();
     raise_event();
 }
 
@@ -381,7 +384,6 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
     for (;;) {
         bool gone;
         libcamera::Request *request = take_latest(&gone);
-        silent_ = silent_ && request == nullptr;
         if (request != nullptr && hand_out(request, output))
             return CAMERA_FRAME;
         if (gone) {
@@ -390,10 +392,8 @@ camera_status libcamera_camera::next(int timeout_ms, camera_frame *output, error
         }
         const int left_ms = camera_left_ms(deadline_ns);
         pollfd waiting = {event_, POLLIN, 0};
-        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0) {
-            silent_ = timeout_ms > 0;
+        if (left_ms == 0 || poll(&waiting, 1, left_ms) == 0)
             return CAMERA_TIMEOUT;
-        }
     }
 }
 

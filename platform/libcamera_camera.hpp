@@ -55,15 +55,15 @@ private:
     libcamera::Request *held_ = nullptr;
     int event_;  /* readable while a request waits, and once the camera is gone */
     bool running_ = false;
-    bool silent_ = false;  /* no frame came when one was waited for last */
 
     std::mutex guard_;  /* of all below, which libcamera's thread uses as well */
     libcamera::Request *latest_ = nullptr;
     uint32_t passed_over_ = 0;
     uint32_t damaged_ = 0;
     libcamera::ControlList changes_{libcamera::controls::controls};
+    int64_t last_sign_ns_ = 0;  /* when a request completed last, or the camera started */
     bool gone_ = false;
-    std::condition_variable changed_;  /* latest_ or gone_ */
+    std::condition_variable changed_;  /* last_sign_ns_ or gone_ */
 };
 
 #endif

@@ -1,5 +1,7 @@
 #include "preview_viewer.h"
 
+#include "preview_request.h"
+
 #include <errno.h>
 #include <poll.h>
 #include <stdio.h>
@@ -8,7 +10,16 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+/* And for whoever takes a picture, as long as a slow network needs: 64 KiB a second. */
 static const int64_t patience_ns = INT64_C(5) * 1000000000;
+static const int64_t patience_a_byte_ns = 1000000000 / 65536;
+
+/* No other site's page may show or read what is answered. */
+#define COMMON_HEADERS \
+    "Cache-Control: no-store\r\nCross-Origin-Resource-Policy: same-origin\r\nX-Content-Type-Options: nosniff\r\n" \
+    "Connection: close\r\n\r\n"
+
+static const char stream_type[] = "multipart/x-mixed-replace; boundary=frame";
 
 static const char page[] =
     "<!DOCTYPE html>\n"
@@ -24,10 +35,6 @@ static const char page[] =
     "live.onclick = () => live.classList.toggle('large');\n"
     "live.onerror = () => setTimeout(() => live.src = '/stream?' + Date.now(), 2000);\n"
     "</script></body></html>\n";
-
-static const char stream_head[] =
-    "HTTP/1.0 200 OK\r\nContent-Type: multipart/x-mixed-replace; boundary=frame\r\nCache-Control: no-store\r\n"
-    "Connection: close\r\n\r\n--frame\r\n";
 
 void preview_viewer_begin(preview_viewer *viewer, int descriptor, int64_t now_ns)
 {
@@ -80,20 +87,27 @@ static bool add_output(preview_viewer *viewer, const void *bytes, size_t size)
 
 static void begin_sending(preview_viewer *viewer, bool all_there, int64_t now_ns)
 {
-    viewer->deadline_ns = now_ns + patience_ns;
+    viewer->deadline_ns = now_ns + patience_ns + (int64_t)viewer->output_bytes * patience_a_byte_ns;
     viewer->state = VIEWER_TAKING;
     if (!all_there)
         preview_viewer_end(viewer);
 }
 
+/* `body` is NULL where only the head is wanted, or its size is not known. */
+static bool add_answer(preview_viewer *viewer, const char *status, const char *type, const void *body, size_t size)
+{
+    char head[400], length_header[48] = "";
+    if (body != NULL)
+        snprintf(length_header, sizeof length_header, "Content-Length: %zu\r\n", size);
+    int length = snprintf(head, sizeof head, "HTTP/1.0 %s\r\nContent-Type: %s\r\n%s" COMMON_HEADERS, status, type,
+                          length_header);
+    return add_output(viewer, head, (size_t)length) && (body == NULL || add_output(viewer, body, size));
+}
+
 static void answer(preview_viewer *viewer, const char *status, const char *type, const void *body, size_t size,
                    int64_t now_ns)
 {
-    char head[256];
-    int length = snprintf(head, sizeof head,
-                          "HTTP/1.0 %s\r\nContent-Type: %s\r\nContent-Length: %zu\r\nCache-Control: no-store\r\n"
-                          "Connection: close\r\n\r\n", status, type, size);
-    bool added = add_output(viewer, head, (size_t)length) && add_output(viewer, body, size);
+    bool added = add_answer(viewer, status, type, body, size);
     begin_sending(viewer, added, now_ns);
 }
 
@@ -102,30 +116,47 @@ static void refuse(preview_viewer *viewer, const char *status, int64_t now_ns)
     answer(viewer, status, "text/plain", status, strlen(status), now_ns);
 }
 
-/* The path in the request's first line, without what follows a question mark. */
-static bool asks_for(const char *target, const char *path)
+static void begin_stream(preview_viewer *viewer, int64_t now_ns)
 {
-    size_t length = strcspn(target, " ?\r");
-    return length == strlen(path) && memcmp(target, path, length) == 0;
+    static const char boundary[] = "--frame\r\n";
+    viewer->streaming = true;
+    bool added = add_answer(viewer, "200 OK", stream_type, NULL, 0) &&
+                 add_output(viewer, boundary, sizeof boundary - 1);
+    begin_sending(viewer, added, now_ns);
+}
+
+static void wait_for_picture(preview_viewer *viewer, int64_t now_ns)
+{
+    viewer->state = VIEWER_WAITING;
+    viewer->deadline_ns = now_ns + patience_ns;
+}
+
+static void answer_head(preview_viewer *viewer, preview_wish wish, int64_t now_ns)
+{
+    const char *type = wish == PREVIEW_PAGE ? "text/html" : wish == PREVIEW_STREAM ? stream_type : "image/jpeg";
+    if (wish == PREVIEW_NO_SUCH_PATH)
+        answer(viewer, "404 There are /, /stream and /frame.jpg", "text/plain", NULL, 0, now_ns);
+    else
+        answer(viewer, "200 OK", type, NULL, 0, now_ns);
 }
 
 static void understand(preview_viewer *viewer, int64_t now_ns)
 {
-    static const char method[] = "GET ";
-    const char *target = viewer->request + strlen(method);
-    if (strncmp(viewer->request, method, strlen(method)) != 0) {
-        refuse(viewer, "405 Only GET is possible", now_ns);
-    } else if (asks_for(target, "/")) {
+    preview_request request = preview_request_parse(viewer->request);
+    if (request.wish == PREVIEW_NO_SUCH_METHOD)
+        refuse(viewer, "405 Only GET and HEAD are possible", now_ns);
+    else if (request.wish == PREVIEW_FOREIGN_HOST)
+        refuse(viewer, "403 Ask by the address, as in http://127.0.0.1:8080/", now_ns);
+    else if (request.head_only)
+        answer_head(viewer, request.wish, now_ns);
+    else if (request.wish == PREVIEW_PAGE)
         answer(viewer, "200 OK", "text/html", page, sizeof page - 1, now_ns);
-    } else if (asks_for(target, "/stream")) {
-        viewer->streaming = true;
-        begin_sending(viewer, add_output(viewer, stream_head, sizeof stream_head - 1), now_ns);
-    } else if (asks_for(target, "/frame.jpg")) {
-        viewer->state = VIEWER_WAITING;
-        viewer->deadline_ns = now_ns + patience_ns;
-    } else {
+    else if (request.wish == PREVIEW_STREAM)
+        begin_stream(viewer, now_ns);
+    else if (request.wish == PREVIEW_PICTURE)
+        wait_for_picture(viewer, now_ns);
+    else
         refuse(viewer, "404 There are /, /stream and /frame.jpg", now_ns);
-    }
 }
 
 static bool is_passing(int reason)
@@ -160,7 +191,7 @@ static void notice_leaving(preview_viewer *viewer)
         preview_viewer_end(viewer);
 }
 
-static void send_output(preview_viewer *viewer, int64_t now_ns)
+static void send_output(preview_viewer *viewer)
 {
     ssize_t count = send(viewer->descriptor, viewer->output + viewer->output_sent_bytes,
                          viewer->output_bytes - viewer->output_sent_bytes, MSG_DONTWAIT | MSG_NOSIGNAL);
@@ -171,7 +202,6 @@ static void send_output(preview_viewer *viewer, int64_t now_ns)
     if (count <= 0)
         return;
     viewer->output_sent_bytes += (size_t)count;
-    viewer->deadline_ns = now_ns + patience_ns;
     if (viewer->output_sent_bytes < viewer->output_bytes)
         return;
     viewer->output_bytes = 0;
@@ -201,7 +231,7 @@ void preview_viewer_step(preview_viewer *viewer, short events, int64_t now_ns)
     else if (viewer->state == VIEWER_WAITING && can_read)
         notice_leaving(viewer);
     if (viewer->state == VIEWER_TAKING)
-        send_output(viewer, now_ns);
+        send_output(viewer);
     if (viewer->state != VIEWER_NONE)
         lose_patience(viewer, now_ns);
 }

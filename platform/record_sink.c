@@ -114,15 +114,22 @@ static void open_channel(record_sink *sink)
         lose(sink, &reason);
 }
 
-record_sink *record_sink_open(const char *name, error_text *error)
+bool record_sink_check(const char *name, error_text *error)
 {
     const record_channel_kind *kind = kind_of(name);
     error_text problem;
-    if (kind == NULL || !kind->check(name + strlen(kind->prefix), &problem)) {
-        error_text_set(error, "%.150s %s", name, kind != NULL ? problem.text
-            : "is no output: it takes serial:DEVICE:BAUD, -, file:PATH, pty:PATH or udp:HOST:PORT");
+    if (kind != NULL && kind->check(name + strlen(kind->prefix), &problem))
+        return true;
+    error_text_set(error, "%.150s %s", name, kind != NULL ? problem.text
+        : "is no output: it takes serial:DEVICE:BAUD, -, file:PATH, pty:PATH or udp:HOST:PORT");
+    return false;
+}
+
+record_sink *record_sink_open(const char *name, error_text *error)
+{
+    const record_channel_kind *kind = kind_of(name);
+    if (!record_sink_check(name, error))
         return NULL;
-    }
     record_sink *sink = calloc(1, sizeof *sink);
     char *own_name = strdup(name);
     if (sink == NULL || own_name == NULL) {

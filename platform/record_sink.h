@@ -59,6 +59,9 @@ typedef struct record_sink_wait {
  * the reason as its first news. SIGPIPE is ignored from here on, so that no closed pipe ends the program. */
 record_sink *record_sink_open(const char *name, error_text *error);
 
+/* Only whether the name makes sense. */
+bool record_sink_check(const char *name, error_text *error);
+
 /* As it was opened. */
 const char *record_sink_name(const record_sink *sink);
 

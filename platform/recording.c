@@ -1,195 +1,226 @@
+/* The frames wait in memory for a thread that writes them, so that no frame ever waits for the disk. */
 #include "recording.h"
 
-#include "gray.h"
+#include "recording_files.h"
 
-#include <errno.h>
-#include <fcntl.h>
-#include <math.h>
-#include <stdio.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
+#include <time.h>
 
-/* Keeps count of what is whole, so that the rest can be cut off. */
-typedef struct written_file {
-    int descriptor;
-    off_t whole_bytes;
-} written_file;
+/* Memory cards pause for a second now and then: what comes meanwhile has room, up to this. */
+enum { WAITING_MIN = 2, WAITING_MAX = 64, WAITING_BYTES = 32 << 20 };
+
+static const int64_t patience_ns = 1000000000;
 
 struct recording {
-    written_file frames;
-    written_file times;
-    bool y4m;
-    bool ended;
-    double rate_hz;
-    frame_layout layout;   /* of the first frame; a width of 0 before that */
-    gray_converter gray;
-    uint8_t *packed;       /* a Y4M frame: its head and rows without gaps */
+    frame_layout layout;      /* of all frames; a width of 0 before the first */
+    size_t frame_bytes;
+    bool ended;               /* takes no more frames */
+    bool failure_told;
+    pthread_t thread;
+    recording_files *files;   /* the thread's own */
+    atomic_bool given_up;     /* what waits is not written any more */
+
+    pthread_mutex_t mutex;    /* of all below */
+    pthread_cond_t changed;
+    camera_frame waiting[WAITING_MAX];  /* a ring, each with memory of its own */
+    unsigned first;
+    unsigned count;           /* the one that is being written included */
+    unsigned capacity;
+    uint8_t *spare[WAITING_MAX];  /* memory for further ones */
+    unsigned spare_count;
+    uint64_t left_out;
+    bool closing;
+    bool failed;
+    error_text failure;
+    bool finished;            /* the thread needs nothing any more */
+    bool abandoned;           /* nobody else does: the thread has to release it */
 };
 
-static const char y4m_frame_head[] = "FRAME\n";
-enum { Y4M_FRAME_HEAD_BYTES = sizeof y4m_frame_head - 1 };
-
-static bool ends_with(const char *text, const char *ending)
+static uint8_t *memory_of(const camera_frame *waiting)
 {
-    size_t length = strlen(text), ending_length = strlen(ending);
-    return length >= ending_length && strcmp(text + length - ending_length, ending) == 0;
+    return (uint8_t *)(uintptr_t)waiting->image.data;
 }
 
-static bool write_all(int descriptor, const void *bytes, size_t size)
+/* With the mutex held. */
+static void forget_first(recording *file)
 {
-    const uint8_t *rest = bytes;
-    while (size > 0) {
-        ssize_t written = write(descriptor, rest, size);
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written <= 0)
-            return false;
-        rest += written;
-        size -= (size_t)written;
-    }
-    return true;
-}
-
-static int create(const char *path)
-{
-    return open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    file->spare[file->spare_count++] = memory_of(&file->waiting[file->first]);
+    file->first = (file->first + 1) % file->capacity;
+    file->count--;
 }
 
 static void release(recording *file)
 {
-    if (file->frames.descriptor >= 0)
-        close(file->frames.descriptor);
-    if (file->times.descriptor >= 0)
-        close(file->times.descriptor);
-    gray_converter_release(&file->gray);
-    free(file->packed);
+    while (file->count > 0)
+        forget_first(file);
+    for (unsigned i = 0; i < file->spare_count; i++)
+        free(file->spare[i]);
+    pthread_cond_destroy(&file->changed);
+    pthread_mutex_destroy(&file->mutex);
     free(file);
+}
+
+/* ---- The thread ----------------------------------------------------------------------------------------- */
+
+/* With the mutex held. NULL when there is nothing to be written any more. */
+static const camera_frame *wait_for_frame(recording *file)
+{
+    while (file->count == 0 && !file->closing)
+        pthread_cond_wait(&file->changed, &file->mutex);
+    bool go_on = file->count > 0 && !file->failed && !atomic_load(&file->given_up);
+    return go_on ? &file->waiting[file->first] : NULL;
+}
+
+static void note_failure(recording *file, const error_text *reason)
+{
+    if (!file->failed)
+        file->failure = *reason;
+    file->failed = true;
+}
+
+/* Lets go of the mutex while the disk is at work. */
+static void write_frames(recording *file)
+{
+    error_text reason;
+    for (const camera_frame *next = wait_for_frame(file); next != NULL; next = wait_for_frame(file)) {
+        pthread_mutex_unlock(&file->mutex);
+        bool written = recording_files_add(file->files, next, &reason);
+        pthread_mutex_lock(&file->mutex);
+        if (written)
+            forget_first(file);
+        else
+            note_failure(file, &reason);
+    }
+    file->left_out += file->count;
+}
+
+static void *write_in_background(void *argument)
+{
+    recording *file = argument;
+    error_text reason;
+    pthread_mutex_lock(&file->mutex);
+    write_frames(file);
+    pthread_mutex_unlock(&file->mutex);
+
+    bool closed = recording_files_close(file->files, &reason);
+
+    pthread_mutex_lock(&file->mutex);
+    if (!closed)
+        note_failure(file, &reason);
+    file->finished = true;
+    bool abandoned = file->abandoned;
+    pthread_cond_signal(&file->changed);
+    pthread_mutex_unlock(&file->mutex);
+    if (abandoned)
+        release(file);
+    return NULL;
+}
+
+static int start_thread(recording *file)
+{
+    sigset_t all, former;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &former);
+    int failure = pthread_create(&file->thread, NULL, write_in_background, file);
+    pthread_sigmask(SIG_SETMASK, &former, NULL);
+    return failure;
+}
+
+/* ---- From outside --------------------------------------------------------------------------------------- */
+
+static void make_locks(recording *file)
+{
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_mutex_init(&file->mutex, NULL);
+    pthread_cond_init(&file->changed, &monotonic);
+    pthread_condattr_destroy(&monotonic);
 }
 
 recording *recording_open(const char *path, double rate_hz, error_text *error)
 {
-    size_t times_path_bytes = strlen(path) + sizeof ".times";
-    char *times_path = malloc(times_path_bytes);
+    error_text ignored;
     recording *file = calloc(1, sizeof *file);
-    if (times_path == NULL || file == NULL) {
+    if (file == NULL) {
         error_text_set(error, "not enough memory");
-        free(times_path);
-        free(file);
         return NULL;
     }
-    snprintf(times_path, times_path_bytes, "%s.times", path);
-    file->y4m = ends_with(path, ".y4m");
-    file->rate_hz = rate_hz;
-    file->frames.descriptor = create(path);
-    int failure = file->frames.descriptor < 0 ? errno : 0;
-    file->times.descriptor = failure == 0 ? create(times_path) : -1;
-    if (failure == 0 && file->times.descriptor < 0)
-        failure = errno;
-    free(times_path);
-    if (failure != 0) {
+    atomic_init(&file->given_up, false);
+    make_locks(file);
+    file->files = recording_files_open(path, rate_hz, &file->given_up, error);
+    int failure = file->files != NULL ? start_thread(file) : 0;
+    if (file->files != NULL && failure == 0)
+        return file;
+    if (file->files != NULL) {
         error_text_set(error, "cannot be recorded to: %s", strerror(failure));
-        release(file);
-        return NULL;
+        recording_files_close(file->files, &ignored);
     }
-    return file;
+    release(file);
+    return NULL;
 }
 
-/* Takes back what was written of a frame of which not all could be. Where nothing can be cut off (of a device, say)
- * there is only more of it than the times tell of. */
-static void cut_to_whole(const written_file *file)
+static bool same_layout(const frame_layout *a, const frame_layout *b)
 {
-    if (ftruncate(file->descriptor, file->whole_bytes) == 0)
-        lseek(file->descriptor, file->whole_bytes, SEEK_SET);
+    return a->width_px == b->width_px && a->height_px == b->height_px && a->format == b->format &&
+           a->stride_bytes == b->stride_bytes;
 }
 
-static void end_with_failure(recording *file, int failure, error_text *error)
+static unsigned capacity_for(size_t frame_bytes)
 {
-    error_text_set(error, "the recording ends here: %s", strerror(failure));
-    cut_to_whole(&file->frames);
-    cut_to_whole(&file->times);
+    size_t frames = WAITING_BYTES / frame_bytes;
+    return frames < WAITING_MIN ? WAITING_MIN : frames < WAITING_MAX ? (unsigned)frames : WAITING_MAX;
 }
 
-static bool write_heads(recording *file, error_text *error)
-{
-    char text[160];
-    const frame_layout *layout = &file->layout;
-    int length = snprintf(text, sizeof text, "# tapemark times 1 %s:%dx%d:%zu\n",
-                          pixel_format_describe(layout->format)->name, layout->width_px, layout->height_px,
-                          layout->stride_bytes);
-    bool written = write_all(file->times.descriptor, text, (size_t)length);
-    file->times.whole_bytes = written ? length : 0;
-    if (written && file->y4m) {
-        long rate_mhz = file->rate_hz > 0 ? lround(file->rate_hz * 1000) : 30000;
-        length = snprintf(text, sizeof text, "YUV4MPEG2 W%d H%d F%ld:1000 Ip A1:1 Cmono\n", layout->width_px,
-                          layout->height_px, rate_mhz);
-        written = write_all(file->frames.descriptor, text, (size_t)length);
-        file->frames.whole_bytes = written ? length : 0;
-    }
-    if (!written)
-        end_with_failure(file, errno, error);
-    return written;
-}
-
-static bool begin(recording *file, const frame_layout *layout, error_text *error)
+static void set_layout(recording *file, const frame_layout *layout)
 {
     file->layout = *layout;
-    if (file->y4m) {
-        size_t gray_bytes = (size_t)layout->width_px * (size_t)layout->height_px;
-        file->packed = malloc(Y4M_FRAME_HEAD_BYTES + gray_bytes);
-        if (file->packed == NULL) {
-            error_text_set(error, "not enough memory for a frame of %zu bytes", gray_bytes);
-            return false;
-        }
-        memcpy(file->packed, y4m_frame_head, Y4M_FRAME_HEAD_BYTES);
-        file->layout = (frame_layout){PIXEL_GREY, layout->width_px, layout->height_px, (size_t)layout->width_px};
-    }
-    return write_heads(file, error);
+    file->frame_bytes = frame_layout_size_bytes(layout);
+    pthread_mutex_lock(&file->mutex);
+    file->capacity = capacity_for(file->frame_bytes);
+    pthread_mutex_unlock(&file->mutex);
 }
 
-static bool same_layout(const recording *file, const frame_layout *layout)
+/* NULL when there is no room for another frame. */
+static uint8_t *find_memory(recording *file)
 {
-    bool same_size = layout->width_px == file->layout.width_px && layout->height_px == file->layout.height_px;
-    return same_size && (file->y4m || (layout->format == file->layout.format &&
-                                       layout->stride_bytes == file->layout.stride_bytes));
+    uint8_t *memory = NULL;
+    pthread_mutex_lock(&file->mutex);
+    bool room = file->count < file->capacity;
+    if (room && file->spare_count > 0)
+        memory = file->spare[--file->spare_count];
+    pthread_mutex_unlock(&file->mutex);
+    return memory != NULL || !room ? memory : malloc(file->frame_bytes);
 }
 
-/* Points to the bytes of a frame as the recording has them. */
-static bool prepare(recording *file, const frame *input, const uint8_t **bytes, size_t *size, error_text *error)
+static void keep_waiting(recording *file, const camera_frame *input)
 {
-    gray_view view;
-    if (!file->y4m) {
-        *bytes = input->data;
-        *size = frame_layout_size_bytes(&input->layout);
-        return true;
-    }
-    if (!gray_from_frame(&file->gray, input, &view, error))
-        return false;
-    size_t width = (size_t)view.width_px;
-    for (int32_t y = 0; y < view.height_px; y++)
-        memcpy(file->packed + Y4M_FRAME_HEAD_BYTES + (size_t)y * width, view.pixels + y * view.stride_bytes, width);
-    *bytes = file->packed;
-    *size = Y4M_FRAME_HEAD_BYTES + width * (size_t)view.height_px;
-    return true;
+    uint8_t *memory = find_memory(file);
+    camera_frame kept = *input;
+    kept.image.data = memory;
+    if (memory != NULL)
+        memcpy(memory, input->image.data, file->frame_bytes);
+    pthread_mutex_lock(&file->mutex);
+    if (memory != NULL)
+        file->waiting[(file->first + file->count++) % file->capacity] = kept;
+    else
+        file->left_out++;
+    pthread_cond_signal(&file->changed);
+    pthread_mutex_unlock(&file->mutex);
 }
 
-static bool write_frame(recording *file, const camera_frame *input, error_text *error)
+static bool has_failed(recording *file, error_text *error)
 {
-    char line[80];
-    const uint8_t *bytes;
-    size_t size;
-    if (!prepare(file, &input->image, &bytes, &size, error))
-        return false;
-    int length = snprintf(line, sizeof line, "%llu %lld %d\n", (unsigned long long)input->image.sequence,
-                          (long long)input->image.time_ns, input->exposure_us);
-    if (!write_all(file->frames.descriptor, bytes, size) ||
-        !write_all(file->times.descriptor, line, (size_t)length)) {
-        end_with_failure(file, errno, error);
-        return false;
-    }
-    file->frames.whole_bytes += (off_t)size;
-    file->times.whole_bytes += length;
-    return true;
+    pthread_mutex_lock(&file->mutex);
+    bool failed = file->failed;
+    if (failed)
+        *error = file->failure;
+    pthread_mutex_unlock(&file->mutex);
+    return failed;
 }
 
 bool recording_add(recording *file, const camera_frame *input, error_text *error)
@@ -199,27 +230,71 @@ bool recording_add(recording *file, const camera_frame *input, error_text *error
         return false;
     }
     if (file->layout.width_px == 0)
-        file->ended = !begin(file, &input->image.layout, error);
-    else if (!same_layout(file, &input->image.layout)) {
+        set_layout(file, &input->image.layout);
+    if (has_failed(file, error)) {
+        file->failure_told = true;
+        file->ended = true;
+    } else if (!same_layout(&file->layout, &input->image.layout)) {
         error_text_set(error, "the recording ends here: the camera's pictures have another size or format now");
         file->ended = true;
+    } else {
+        keep_waiting(file, input);
     }
-    file->ended = file->ended || !write_frame(file, input, error);
     return !file->ended;
+}
+
+uint64_t recording_left_out(recording *file)
+{
+    pthread_mutex_lock(&file->mutex);
+    uint64_t left_out = file->left_out;
+    pthread_mutex_unlock(&file->mutex);
+    return left_out;
+}
+
+/* With the mutex held. */
+static bool wait_until_finished(recording *file)
+{
+    int64_t deadline_ns = camera_clock_ns() + patience_ns;
+    struct timespec deadline = {(time_t)(deadline_ns / 1000000000), (long)(deadline_ns % 1000000000)};
+    while (!file->finished && pthread_cond_timedwait(&file->changed, &file->mutex, &deadline) == 0)
+        continue;
+    return file->finished;
+}
+
+/* With the mutex held: first for all that waits, then for the frame that is being written. */
+static bool let_finish(recording *file)
+{
+    file->closing = true;
+    pthread_cond_signal(&file->changed);
+    if (wait_until_finished(file))
+        return true;
+    atomic_store(&file->given_up, true);
+    return wait_until_finished(file);
 }
 
 bool recording_close(recording *file, error_text *error)
 {
     if (file == NULL)
         return true;
-    /* Disks that are reached over a network may tell only now that they are full. */
-    bool closed = close(file->frames.descriptor) == 0;
-    int failure = errno;
-    closed = close(file->times.descriptor) == 0 && closed;
-    if (!closed)
-        error_text_set(error, "the recording is not whole: %s", strerror(failure));
-    file->frames.descriptor = -1;
-    file->times.descriptor = -1;
+    pthread_mutex_lock(&file->mutex);
+    bool finished = let_finish(file);
+    bool whole = false;
+    if (!finished)
+        error_text_set(error, "the recording is not whole: the disk does not answer");
+    else if (file->failed && !file->failure_told)
+        *error = file->failure;
+    else if (!file->failed && file->left_out > 0)
+        error_text_set(error, "the recording lacks %llu frames: the disk was too slow",
+                       (unsigned long long)file->left_out);
+    else
+        whole = true;
+    file->abandoned = !finished;
+    pthread_mutex_unlock(&file->mutex);
+    if (!finished) {
+        pthread_detach(file->thread);
+        return false;
+    }
+    pthread_join(file->thread, NULL);
     release(file);
-    return closed;
+    return whole;
 }

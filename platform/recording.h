@@ -4,6 +4,9 @@
  * PATH.y4m holds the luma as 8-bit gray, which any video program shows; any other name the frames byte for byte, one
  * after the other. Beside it, PATH.times is a text file: a line "# tapemark times 1 LAYOUT", then for each frame its
  * sequence number, the middle of its exposure in ns (CLOCK_MONOTONIC) and its exposure in us (0: not known).
+ *
+ * Frames are copied, and written by a thread: nobody waits for the disk. Frames for which it is too slow are left out
+ * and counted; a gap in the sequence numbers stands for them.
  */
 #ifndef PLATFORM_RECORDING_H
 #define PLATFORM_RECORDING_H
@@ -20,12 +23,16 @@ typedef struct recording recording;
  * NULL on failure. */
 recording *recording_open(const char *path, double rate_hz, error_text *error);
 
-/* False, with an error, when the recording has ended without this frame: the disk is full, the frame has another
- * layout than those before. What was recorded up to then is whole and can be played. Programs that limit the size of
- * their files have to ignore SIGXFSZ. */
+/* Never waits for the disk. False, with an error, when the recording has ended: the disk is full, which shows some
+ * frames later, or the frame has another layout than those before. What was recorded up to then is whole and can be
+ * played. Programs that limit the size of their files have to ignore SIGXFSZ. */
 bool recording_add(recording *file, const camera_frame *input, error_text *error);
 
-/* NULL is fine. False, with an error, when what was written did not reach the disk. */
+/* Frames that were given and are not recorded, because the disk was too slow. */
+uint64_t recording_left_out(recording *file);
+
+/* Writes what waits, for two seconds at most. NULL is fine. False, with an error, when frames are missing or did not
+ * reach the disk, unless recording_add() has told so. */
 bool recording_close(recording *file, error_text *error);
 
 /* ---- The times of a recording, read again ----------------------------------------------------------------- */

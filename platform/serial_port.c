@@ -6,6 +6,7 @@
 #include <libserialport.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
@@ -31,6 +32,8 @@ static void tell_open_failure(int reason, error_text *error)
 {
     if (reason == EACCES || reason == EPERM)
         error_text_set(error, "may not be opened: %s; its users are those of the group dialout", strerror(reason));
+    else if (reason == EBUSY || reason == EWOULDBLOCK)
+        error_text_set(error, "is used by another program");
     else if (reason == ENOTTY || reason == EISDIR || reason == EINVAL || reason == 0)
         error_text_set(error, "is no serial port");
     else
@@ -83,6 +86,30 @@ static bool open_terminal(serial_port *port, const char *path, error_text *error
     return false;
 }
 
+static void close_descriptor(serial_port *port)
+{
+    if (port->known != NULL) {
+        sp_close(port->known);
+        sp_free_port(port->known);
+    } else {
+        close(port->descriptor);
+    }
+}
+
+/* Two programs on one line would mix their records. Terminal programs take the same lock; whoever does not is kept
+ * out by TIOCEXCL, but for root. A pseudo terminal would stay exclusive when it is closed: there the lock is all. */
+static bool keep_others_out(serial_port *port, error_text *error)
+{
+    if (flock(port->descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        tell_open_failure(EWOULDBLOCK, error);
+        close_descriptor(port);
+        return false;
+    }
+    if (port->known != NULL)
+        ioctl(port->descriptor, TIOCEXCL);
+    return true;
+}
+
 /* libserialport does not follow links, and /dev/serial0 or /dev/serial/by-id are nothing else. */
 static bool open_resolved(serial_port *port, const char *path, int32_t baud, error_text *error)
 {
@@ -95,10 +122,7 @@ static bool open_resolved(serial_port *port, const char *path, int32_t baud, err
         port->known = NULL;
         opened = open_terminal(port, path, error);
     }
-    /* Two programs on one line would mix their records. */
-    if (opened)
-        ioctl(port->descriptor, TIOCEXCL);
-    return opened;
+    return opened && keep_others_out(port, error);
 }
 
 serial_port *serial_port_open(const char *device, int32_t baud, error_text *error)
@@ -165,11 +189,6 @@ void serial_port_close(serial_port *port)
     if (port == NULL)
         return;
     serial_port_flush(port);
-    if (port->known != NULL) {
-        sp_close(port->known);
-        sp_free_port(port->known);
-    } else {
-        close(port->descriptor);
-    }
+    close_descriptor(port);
     free(port);
 }

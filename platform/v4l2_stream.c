@@ -77,6 +77,7 @@ static bool map_buffers(v4l2_stream *stream, size_t least_bytes, error_text *err
         error_text_set(error, "is used by another program");
         return false;
     }
+    stream->requested = failure == 0;
     if (failure != 0 || count < BUFFERS_NEEDED) {
         error_text_set(error, "has no buffers to share: %s",
                        failure != 0 ? strerror(failure) : "fewer than are needed");
@@ -111,7 +112,7 @@ void v4l2_stream_stop(v4l2_stream *stream)
         v4l2_call(stream->descriptor, VIDIOC_STREAMOFF, &type);
     for (uint32_t i = 0; i < stream->buffer_count; i++)
         munmap(stream->buffers[i].bytes, stream->buffers[i].size);
-    if (stream->buffer_count > 0)
+    if (stream->requested)
         request_buffers(stream->descriptor, &none);
     *stream = (v4l2_stream){.running = false};
 }

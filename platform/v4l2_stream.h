@@ -22,6 +22,7 @@ typedef struct v4l2_stream {
     v4l2_mapped_buffer buffers[V4L2_STREAM_BUFFERS_MAX];
     uint32_t buffer_count;
     uint32_t with_driver;  /* buffers that the driver may fill, or has filled */
+    bool requested;        /* the driver has set memory aside, and lets no format be set meanwhile */
     bool running;
 } v4l2_stream;
 

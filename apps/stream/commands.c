@@ -18,23 +18,23 @@ static void say_number(error_text *said, double number, const char *automatic)
 
 static void get_exposure(const command_target *target, error_text *said)
 {
-    const camera *device = target->camera->device;
-    int32_t exposure_us = target->settings->exposure_us;
-    say_number(said, device != NULL ? camera_settings_of(device)->exposure_us : exposure_us, "auto");
+    camera_settings now;
+    bool open = camera_watch_settings(target->camera, &now);
+    say_number(said, open ? now.exposure_us : target->settings->exposure_us, "auto");
 }
 
 static void get_gain(const command_target *target, error_text *said)
 {
-    const camera *device = target->camera->device;
-    double gain = device != NULL ? camera_settings_of(device)->gain : target->settings->gain;
-    say_number(said, hundredths * gain, "auto");
+    camera_settings now;
+    bool open = camera_watch_settings(target->camera, &now);
+    say_number(said, hundredths * (open ? now.gain : target->settings->gain), "auto");
 }
 
 /* Where the camera does not tell, the wish. */
 static void get_rate(const command_target *target, error_text *said)
 {
-    const camera *device = target->camera->device;
-    double rate_hz = device != NULL ? camera_settings_of(device)->mode.rate_hz : 0;
+    camera_settings now;
+    double rate_hz = camera_watch_settings(target->camera, &now) ? now.mode.rate_hz : 0;
     if (rate_hz <= 0 && target->settings->rate_hz < rate_unlimited_hz)
         rate_hz = target->settings->rate_hz;
     say_number(said, rate_hz * tenths_per_hz, "max");
@@ -58,7 +58,8 @@ static void get_roi(const command_target *target, error_text *said)
 
 static bool set_light(const command_target *target, int32_t exposure_us, double gain, error_text *error)
 {
-    if (target->camera->device != NULL && !camera_set_light(target->camera->device, exposure_us, gain, error))
+    if (target->camera->thread != NULL &&
+        !camera_thread_set_light(target->camera->thread, exposure_us, gain, error))
         return false;
     target->settings->exposure_us = exposure_us;
     target->settings->gain = gain;
@@ -88,14 +89,14 @@ static bool set_rate(const command_target *target, const char *value, error_text
         return false;
     double rate_before_hz = target->settings->rate_hz;
     target->settings->rate_hz = tenths > 0 ? tenths / tenths_per_hz : rate_unlimited_hz;
-    if (target->camera->device == NULL)
+    if (target->camera->thread == NULL)
         return true;
     camera_wishes wishes = settings_camera_wishes(target->settings);
-    if (camera_configure(target->camera->device, &wishes, error))
+    if (camera_thread_configure(target->camera->thread, &wishes, error))
         return true;
     target->settings->rate_hz = rate_before_hz;
     wishes = settings_camera_wishes(target->settings);
-    camera_configure(target->camera->device, &wishes, &ignored);
+    camera_thread_configure(target->camera->thread, &wishes, &ignored);
     return false;
 }
 

@@ -64,7 +64,7 @@ static bool read_line(config_reading *reading, char *line, error_text *error)
         return true;
     char *equals = strchr(name, '=');
     if (equals == NULL) {
-        error_text_set(error, "line %u: expected 'name = value', not '%.40s'", reading->line, name);
+        error_text_set(error, "line %u: expected \"name = value\", not \"%.40s\"", reading->line, name);
         return false;
     }
     *equals = '\0';
@@ -100,12 +100,15 @@ bool config_file_read(const char *path, stream_settings *settings, error_text *e
     byte_reader_close(file);
     if (text == NULL)
         return false;
+    /* Some editors begin a file with a mark that says that it is UTF-8. */
+    static const char mark[] = "\xef\xbb\xbf";
+    size_t begin = strncmp(text, mark, strlen(mark)) == 0 ? strlen(mark) : 0;
     config_reading reading = {.settings = settings};
     bool done = false;
     if (strlen(text) != size)
         error_text_set(error, "is no text: it holds bytes of 0");
     else
-        done = read_lines(&reading, text, error);
+        done = read_lines(&reading, text + begin, error);
     free(text);
     return done;
 }

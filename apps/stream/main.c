@@ -40,7 +40,8 @@ static int run(command_line command, const stream_settings *settings, bool outpu
         return EXIT_BAD_INPUT;
     }
     int status = stream_open(&program, command, settings) ? stream_run(&program) : EXIT_BAD_INPUT;
-    stream_close(&program);
+    if (!stream_close(&program))
+        _exit(status);
     return status;
 }
 

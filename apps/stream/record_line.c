@@ -46,9 +46,17 @@ frame_records *record_line_place(record_line *line, uint32_t dropped)
     return &line->waiting;
 }
 
+/* A frame time is that of the camera, or of whoever takes its frames, when that is longer. */
 void record_line_offer(record_line *line)
 {
+    int64_t capture_ns = line->waiting.capture_ns;
     line->is_waiting = true;
+    line->waiting_until_ns = INT64_MAX;
+    if (capture_ns == FRAME_TIME_UNKNOWN)
+        return;
+    if (line->last_capture_ns > 0 && capture_ns > line->last_capture_ns)
+        line->waiting_until_ns = capture_ns + 2 * (capture_ns - line->last_capture_ns);
+    line->last_capture_ns = capture_ns;
 }
 
 /* What does not fit any more is left out. */
@@ -100,6 +108,15 @@ static void send_frame(record_line *line, int64_t now_ns)
     line->notes_were_last = false;
 }
 
+static void leave_out_when_old(record_line *line, int64_t now_ns)
+{
+    if (!line->is_waiting || now_ns < line->waiting_until_ns)
+        return;
+    line->is_waiting = false;
+    line->records_replaced += line->waiting.count;
+    record_line_leave_out(line, 1);
+}
+
 static void send_notes(record_line *line)
 {
     size_t size = 0;
@@ -122,6 +139,7 @@ void record_line_go_on(record_line *line, int64_t now_ns)
     bool notes = line->answers.size + line->status.size > 0;
     line->stalled = line->stalled || state != RECORD_SINK_OPEN;
     take_latency(line);
+    leave_out_when_old(line, now_ns);
     if (!record_sink_ready(line->sink))
         return;
     if (notes && (!line->is_waiting || !line->notes_were_last))
@@ -146,7 +164,7 @@ uint64_t record_line_records_dropped(const record_line *line)
 
 bool record_line_command(record_line *line, tapemark_command_record *command)
 {
-    for (;;) {
+    while (line->answers.records < ANSWERS_MAX) {
         while (line->received_taken < line->received_size) {
             uint8_t byte = line->received[line->received_taken++];
             if (tapemark_receiver_push(&line->receiver, byte) == TAPEMARK_RECORD_COMMAND) {
@@ -159,4 +177,5 @@ bool record_line_command(record_line *line, tapemark_command_record *command)
         if (line->received_size == 0)
             return false;
     }
+    return false;
 }

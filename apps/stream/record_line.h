@@ -2,7 +2,8 @@
  * The line to the microcontroller: the newest frame, what is said beside it, and the commands that come back.
  *
  * One frame waits at most, as records; it is written down when its first byte can leave, with its age of then. One
- * that comes while it waits takes its place. What is said beside frames goes between them.
+ * that comes while it waits takes its place, and one that is older than two frame times by then is left out. What is
+ * said beside frames goes between them.
  */
 #ifndef STREAM_RECORD_LINE_H
 #define STREAM_RECORD_LINE_H
@@ -11,7 +12,8 @@
 #include "latency.h"
 #include "record_sink.h"
 
-enum { NOTES_MAX_BYTES = 16 * TAPEMARK_SENTENCE_MAX_BYTES };
+/* Answers that go out together: more would hold frames up. */
+enum { ANSWERS_MAX = 4, NOTES_MAX_BYTES = ANSWERS_MAX * TAPEMARK_SENTENCE_MAX_BYTES };
 
 typedef struct line_notes {
     uint8_t bytes[NOTES_MAX_BYTES];
@@ -25,6 +27,8 @@ typedef struct record_line {
     tapemark_encoding encoding;
     frame_records waiting;
     bool is_waiting;
+    int64_t waiting_until_ns;    /* when it is too old; INT64_MAX: never */
+    int64_t last_capture_ns;     /* of the frame offered last; 0: none yet */
     uint32_t dropped;            /* frames left out since the last one that was sent */
     uint64_t dropped_total;
     uint64_t frames_sent;
@@ -66,7 +70,7 @@ void record_line_go_on(record_line *line, int64_t now_ns);
 /* Nothing waits, and the last byte has left. */
 bool record_line_is_idle(const record_line *line, int64_t now_ns);
 
-/* The next command that has come; false when there is none. */
+/* The next command that has come; false when there is none, or no room for its answer yet: then it waits. */
 bool record_line_command(record_line *line, tapemark_command_record *command);
 
 uint64_t record_line_records_dropped(const record_line *line);

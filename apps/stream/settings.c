@@ -1,12 +1,15 @@
 #include "settings.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 
 #include "gpio_lines.h"
+#include "net_address.h"
+#include "option_values.h"
+#include "record_sink.h"
 
 const double rate_unlimited_hz = 10000;
 
@@ -14,35 +17,25 @@ const double rate_unlimited_hz = 10000;
 
 static bool parse_real(const char *text, double least, double most, double *value, error_text *error)
 {
-    char *end;
-    *value = strtod(text, &end);
-    if (end != text && *end == '\0' && *value >= least && *value <= most)
-        return true;
-    error_text_set(error, "expected a number from %g to %g, not '%.40s'", least, most, text);
-    return false;
+    return parse_value(text, (value_range){VALUE_NUMBER, least, most}, value, error);
 }
 
-static bool parse_whole(const char *text, long least, long most, long *value, error_text *error)
+static bool parse_whole(const char *text, int32_t least, int32_t most, int32_t *value, error_text *error)
 {
-    char *end;
-    errno = 0;
-    *value = strtol(text, &end, 10);
-    if (end != text && *end == '\0' && errno == 0 && *value >= least && *value <= most)
-        return true;
-    error_text_set(error, "expected a whole number from %ld to %ld, not '%.40s'", least, most, text);
-    return false;
+    double number;
+    bool fits = parse_value(text, (value_range){VALUE_WHOLE, least, most}, &number, error);
+    *value = fits ? (int32_t)number : *value;
+    return fits;
 }
 
 bool settings_parse_count(const char *text, const char *automatic, int32_t most, int32_t *value, error_text *error)
 {
-    long number = 0;
+    int32_t number = 0;
     error_text ignored;
-    if (strcmp(text, automatic) != 0 && !parse_whole(text, 1, most, &number, &ignored)) {
-        error_text_set(error, "1 to %d or %s", most, automatic);
-        return false;
-    }
-    *value = (int32_t)number;
-    return true;
+    bool fits = strcmp(text, automatic) == 0 || parse_whole(text, 1, most, &number, &ignored);
+    *value = fits ? number : *value;
+    error_text_set(error, "1 to %d or %s", most, automatic);
+    return fits;
 }
 
 static bool parse_yes_or_no(const char *text, bool *value, error_text *error)
@@ -50,7 +43,7 @@ static bool parse_yes_or_no(const char *text, bool *value, error_text *error)
     *value = strcmp(text, "yes") == 0;
     if (*value || strcmp(text, "no") == 0)
         return true;
-    error_text_set(error, "expected yes or no, not '%.40s'", text);
+    error_text_set(error, "expected yes or no, not \"%.40s\"", text);
     return false;
 }
 
@@ -102,19 +95,22 @@ static bool expected(bool fits, const char *value, error_text *error)
 {
     error_text right = *error;
     if (!fits)
-        error_text_set(error, "expected %.200s, not '%.40s'", right.text, value);
+        error_text_set(error, "expected %.200s, not \"%.40s\"", right.text, value);
     return fits;
+}
+
+static bool is_short_enough(const char *value, size_t size, error_text *error)
+{
+    error_text_set(error, "is longer than %zu characters", size - 1);
+    return strlen(value) < size;
 }
 
 static bool copy_text(char *target, size_t size, const char *value, error_text *error)
 {
-    size_t length = strlen(value);
-    if (length >= size) {
-        error_text_set(error, "is longer than %zu characters", size - 1);
-        return false;
-    }
-    memcpy(target, value, length + 1);
-    return true;
+    bool fits = is_short_enough(value, size, error);
+    if (fits)
+        memcpy(target, value, strlen(value) + 1);
+    return fits;
 }
 
 /* ---- One setter a kind of setting ---------------------------------------------------------------------------- */
@@ -135,7 +131,7 @@ static bool set_camera(stream_settings *settings, const char *value, error_text 
     static const char *const kinds[] = {"v4l2:", "libcamera:", "file:", "raw:"};
     if (strcmp(value, "auto") != 0 && !is_one_of(value, kinds, sizeof kinds / sizeof *kinds)) {
         error_text_set(error, "expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or "
-                              "raw:LAYOUT,PATH[@RATE], not '%.80s'", value);
+                              "raw:LAYOUT,PATH[@RATE], not \"%.80s\"", value);
         return false;
     }
     return copy_text(settings->camera, sizeof settings->camera, value, error);
@@ -143,22 +139,15 @@ static bool set_camera(stream_settings *settings, const char *value, error_text 
 
 static bool set_output(stream_settings *settings, const char *value, error_text *error)
 {
-    static const char *const kinds[] = {"serial:", "file:", "pty:", "udp:"};
-    if (strcmp(value, "-") != 0 && !is_one_of(value, kinds, sizeof kinds / sizeof *kinds)) {
-        error_text_set(error, "expected -, serial:PORT[:BAUD], file:PATH, pty:PATH or udp:HOST:PORT, not '%.80s'",
-                       value);
-        return false;
-    }
-    return copy_text(settings->output, sizeof settings->output, value, error);
+    return is_short_enough(value, sizeof settings->output, error) && record_sink_check(value, error) &&
+           copy_text(settings->output, sizeof settings->output, value, error);
 }
 
 static bool set_serial(stream_settings *settings, const char *value, error_text *error)
 {
-    error_text ignored;
-    char text[SETTING_TEXT_BYTES];
+    char text[sizeof "serial:" + SETTING_TEXT_BYTES];
     int length = snprintf(text, sizeof text, "serial:%s", value);
-    return copy_text(settings->output, sizeof settings->output,
-                     length < (int)sizeof text ? text : value, length < (int)sizeof text ? &ignored : error);
+    return set_output(settings, length < (int)sizeof text ? text : value, error);
 }
 
 static bool set_map(stream_settings *settings, const char *value, error_text *error)
@@ -168,6 +157,12 @@ static bool set_map(stream_settings *settings, const char *value, error_text *er
 
 static bool set_preview(stream_settings *settings, const char *value, error_text *error)
 {
+    struct addrinfo *address = net_address_parse(value, SOCK_STREAM);
+    if (address == NULL) {
+        error_text_set(error, "expected PORT or HOST:PORT, with a number such as 0.0.0.0 for HOST, not \"%.60s\"", value);
+        return false;
+    }
+    freeaddrinfo(address);
     return copy_text(settings->preview, sizeof settings->preview, value, error);
 }
 
@@ -210,11 +205,7 @@ static bool set_rate(stream_settings *settings, const char *value, error_text *e
 
 static bool set_size(stream_settings *settings, const char *value, error_text *error)
 {
-    const char *at = value;
-    bool fits = take_number(&at, 'x', &settings->width_px) && take_number(&at, '\0', &settings->height_px) &&
-                settings->width_px > 0 && settings->height_px > 0;
-    error_text_set(error, "WIDTHxHEIGHT in pixels");
-    return expected(fits, value, error);
+    return parse_size(value, FRAME_SIDE_MAX_PX, &settings->width_px, &settings->height_px, error);
 }
 
 static bool set_format(stream_settings *settings, const char *value, error_text *error)
@@ -225,15 +216,20 @@ static bool set_format(stream_settings *settings, const char *value, error_text 
 
 static bool set_markers(stream_settings *settings, const char *value, error_text *error)
 {
-    long number;
+    int32_t number = settings->markers_max;
     bool fits = parse_whole(value, 1, MARKERS_MAX, &number, error);
-    settings->markers_max = fits ? (uint8_t)number : settings->markers_max;
+    settings->markers_max = (uint8_t)number;
     return fits;
 }
 
 static bool set_repeat(stream_settings *settings, const char *value, error_text *error)
 {
     return parse_yes_or_no(value, &settings->repeat, error);
+}
+
+static bool set_still(stream_settings *settings, const char *value, error_text *error)
+{
+    return parse_yes_or_no(value, &settings->still, error);
 }
 
 static bool set_inverted(stream_settings *settings, const char *value, error_text *error)
@@ -255,10 +251,7 @@ static bool set_roll(stream_settings *settings, const char *value, error_text *e
 
 static bool set_max_id(stream_settings *settings, const char *value, error_text *error)
 {
-    long number;
-    bool fits = parse_whole(value, 1, TAPEMARK_MAX_ID, &number, error);
-    settings->decoder.id_max = fits ? (int32_t)number : 0;
-    return fits;
+    return parse_whole(value, 1, TAPEMARK_MAX_ID, &settings->decoder.id_max, error);
 }
 
 static bool set_confidence_min(stream_settings *settings, const char *value, error_text *error)
@@ -295,13 +288,13 @@ typedef bool setter(stream_settings *settings, const char *value, error_text *er
 
 static const char *const names[] = {
     "camera", "serial", "output", "map", "encoding", "format", "size", "rate", "exposure", "gain", "roi", "markers",
-    "gpio-seen", "gpio-strobe", "gpio-trigger", "snapshots", "preview", "record", "repeat", "inverted", "roll",
-    "max-id", "confidence-min", NULL};
+    "gpio-seen", "gpio-strobe", "gpio-trigger", "snapshots", "preview", "record", "repeat", "still", "inverted",
+    "roll", "max-id", "confidence-min", NULL};
 
 static setter *const setters[] = {
     set_camera, set_serial, set_output, set_map, set_encoding, set_format, set_size, set_rate, set_exposure, set_gain,
     set_roi, set_markers, set_gpio_seen, set_gpio_strobe, set_gpio_trigger, set_snapshots, set_preview, set_record,
-    set_repeat, set_inverted, set_roll, set_max_id, set_confidence_min};
+    set_repeat, set_still, set_inverted, set_roll, set_max_id, set_confidence_min};
 
 _Static_assert(sizeof names / sizeof *names == sizeof setters / sizeof *setters + 1, "a setter for each name");
 

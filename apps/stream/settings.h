@@ -35,6 +35,7 @@ typedef struct stream_settings {
     camera_region roi;                   /* all zero: the whole picture */
     uint8_t markers_max;                 /* that are sent of a frame */
     bool repeat;                         /* a recording begins again at its end */
+    bool still;                          /* a live picture may stand still */
     tapemark_config decoder;             /* without the map's ids */
 } stream_settings;
 

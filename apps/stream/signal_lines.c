@@ -31,23 +31,39 @@ void signal_lines_open(signal_lines *lines, const gpio_settings *wanted)
         tell_failure(lines, "gpio-trigger", &reason);
 }
 
+bool signal_lines_are_whole(const signal_lines *lines, const gpio_settings *wanted)
+{
+    return (lines->seen != NULL) == (wanted->seen[0] != '\0') &&
+           (lines->strobe != NULL) == (wanted->strobe[0] != '\0') &&
+           (lines->trigger != NULL) == (wanted->trigger[0] != '\0');
+}
+
 void signal_lines_show_seen(signal_lines *lines, bool seen)
 {
     error_text reason;
-    if (lines->seen != NULL && !gpio_output_set(lines->seen, seen, &reason))
-        tell_failure(lines, "gpio-seen", &reason);
+    if (lines->seen == NULL || gpio_output_set(lines->seen, seen, &reason))
+        return;
+    tell_failure(lines, "gpio-seen", &reason);
+    gpio_output_close(lines->seen);
+    lines->seen = NULL;
+}
+
+static bool strobe_is_there(signal_lines *lines)
+{
+    error_text reason;
+    if (lines->strobe == NULL || !strobe_news(lines->strobe, &reason))
+        return lines->strobe != NULL;
+    tell_failure(lines, "gpio-strobe", &reason);
+    strobe_close(lines->strobe);
+    lines->strobe = NULL;
+    return false;
 }
 
 void signal_lines_foretell(signal_lines *lines, const camera_frame *got, int64_t now_ns)
 {
     /* Light needs time to come on, and so does the thread that turns it on. */
     const int64_t lead_ns = 300000;
-    error_text reason;
-    if (lines->strobe == NULL)
-        return;
-    if (strobe_news(lines->strobe, &reason))
-        tell_failure(lines, "gpio-strobe", &reason);
-    if (got->image.time_ns == FRAME_TIME_UNKNOWN)
+    if (!strobe_is_there(lines) || got->image.time_ns == FRAME_TIME_UNKNOWN)
         return;
     if (lines->last_exposure_ns != 0)
         lines->period_ns = (got->image.time_ns - lines->last_exposure_ns) / ((int64_t)got->dropped + 1);
@@ -64,9 +80,12 @@ bool signal_lines_triggered(signal_lines *lines)
 {
     error_text reason;
     unsigned count = 0;
-    if (lines->trigger != NULL && !gpio_input_events(lines->trigger, &count, &reason))
-        tell_failure(lines, "gpio-trigger", &reason);
-    return count > 0;
+    if (lines->trigger == NULL || gpio_input_events(lines->trigger, &count, &reason))
+        return count > 0;
+    tell_failure(lines, "gpio-trigger", &reason);
+    gpio_input_close(lines->trigger);
+    lines->trigger = NULL;
+    return false;
 }
 
 int signal_lines_descriptor(const signal_lines *lines)

@@ -1,4 +1,5 @@
-/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and then left alone. */
+/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and given back; it stays away until all
+ * are opened again. */
 #ifndef STREAM_SIGNAL_LINES_H
 #define STREAM_SIGNAL_LINES_H
 
@@ -19,6 +20,9 @@ typedef struct signal_lines {
 
 /* Takes those that are named, after leaving the ones before. Those that cannot be had are told of and left out. */
 void signal_lines_open(signal_lines *lines, const gpio_settings *wanted);
+
+/* Whether all that are named are there and none has failed. */
+bool signal_lines_are_whole(const signal_lines *lines, const gpio_settings *wanted);
 
 void signal_lines_show_seen(signal_lines *lines, bool seen);
 

@@ -10,6 +10,8 @@
 #include "recording.h"
 #include "service.h"
 #include "signal_lines.h"
+#include "snapshot.h"
+#include "stillness.h"
 
 /* What is counted between two STATUS records, and since the start. */
 typedef struct stream_counts {
@@ -18,7 +20,7 @@ typedef struct stream_counts {
     int64_t latency_p99_ns;
     int64_t last_status_ns;
     uint64_t frames_sent;     /* when it was last looked at */
-    unsigned mistakes;        /* of configuration files, maps, commands, recordings, snapshots and frames */
+    unsigned mistakes;        /* of configuration files, maps, commands, recordings and frames */
     unsigned line_failures;
 } stream_counts;
 
@@ -34,6 +36,8 @@ typedef struct stream {
     frame_reader reader;
     record_line line;
     signal_lines gpio;
+    snapshots *snapshots;
+    stillness stillness;
     preview_server *preview;
     preview_notes notes;
     recording *recording;
@@ -58,12 +62,13 @@ bool stream_open(stream *self, command_line command, const stream_settings *sett
 /* Reads the configuration file and the map again. What is wrong is told, and what was there before stays. */
 void stream_reload(stream *self);
 
-void stream_close(stream *self);
+/* False when something still holds a thread: the program has to end without waiting for it. */
+bool stream_close(stream *self);
 
 /* ---- stream_frames.c ---- */
 
 /* Everything that is done with a frame; its records leave first. */
-void stream_take_frame(stream *self, const camera_frame *got);
+void stream_take_frame(stream *self, const camera_frame *got, int64_t now_ns);
 
 /* A FRAME without a frame. */
 void stream_tell_loss(stream *self, int64_t now_ns);

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "messages.h"
-#include "snapshot.h"
 
 static const int64_t second_ns = 1000000000;
 
@@ -64,7 +63,8 @@ static void record(stream *self, const camera_frame *got)
     if (self->settings.record[0] == '\0' || (self->recording_begun && self->recording == NULL))
         return;
     if (!self->recording_begun) {
-        double rate_hz = camera_settings_of(self->camera.device)->mode.rate_hz;
+        camera_settings settings;
+        double rate_hz = camera_watch_settings(&self->camera, &settings) ? settings.mode.rate_hz : 0;
         self->recording_begun = true;
         self->recording = recording_open(self->settings.record, rate_hz, &reason);
     }
@@ -74,15 +74,9 @@ static void record(stream *self, const camera_frame *got)
 
 static void save_snapshot(stream *self, const gray_view *view)
 {
-    error_text reason;
-    char path[SETTING_TEXT_BYTES + 64];
-    if (!self->snapshot_wanted)
-        return;
+    if (self->snapshot_wanted)
+        snapshots_save(self->snapshots, self->settings.snapshots, view);
     self->snapshot_wanted = false;
-    if (snapshot_save(self->settings.snapshots, view, path, sizeof path, &reason))
-        return;
-    message_tell(path, reason.text);
-    self->counts.mistakes++;
 }
 
 static void show(stream *self, const frame_reading *reading)
@@ -93,22 +87,41 @@ static void show(stream *self, const frame_reading *reading)
     preview_server_show(self->preview, &reading->view, &self->notes);
 }
 
-void stream_take_frame(stream *self, const camera_frame *got)
+/* A picture that stands still in a live camera is none: what is in it may have been there long ago. */
+static bool is_frozen(stream *self, const frame_reading *reading, const camera_frame *got)
+{
+    bool has_markers = reading->result.cm_count + reading->result.tm_count > 0;
+    return !self->camera.recorded && !self->settings.still && got->image.time_ns != FRAME_TIME_UNKNOWN &&
+           stillness_lasts(&self->stillness, &reading->view, has_markers, got->image.time_ns);
+}
+
+static void use_reading(stream *self, const frame_reading *reading, const camera_frame *got)
+{
+    send_reading(self, reading, got);
+    signal_lines_show_seen(&self->gpio, reading->result.cm_count + reading->result.tm_count > 0);
+    self->width_px = reading->view.width_px;
+    self->height_px = reading->view.height_px;
+    save_snapshot(self, &reading->view);
+    show(self, reading);
+}
+
+void stream_take_frame(stream *self, const camera_frame *got, int64_t now_ns)
 {
     frame_reading reading;
-    signal_lines_foretell(&self->gpio, got, camera_clock_ns());
+    signal_lines_foretell(&self->gpio, got, now_ns);
+    bool done = read_frame(self, got, &reading);
+    if (done && is_frozen(self, &reading, got)) {
+        camera_watch_refuse(&self->camera, got, "gives the very same picture again and again", now_ns);
+        return;
+    }
+    camera_watch_accept(&self->camera, got, now_ns);
     self->counts.frames++;
     self->last = *got;
-    if (read_frame(self, got, &reading)) {
-        signal_lines_show_seen(&self->gpio, reading.result.cm_count + reading.result.tm_count > 0);
-        send_reading(self, &reading, got);
-        self->width_px = reading.view.width_px;
-        self->height_px = reading.view.height_px;
-        save_snapshot(self, &reading.view);
-        show(self, &reading);
-    } else {
+    self->next_loss_ns = 0;
+    if (done)
+        use_reading(self, &reading, got);
+    else
         record_line_leave_out(&self->line, got->dropped + 1);
-    }
     record(self, got);
 }
 
@@ -156,12 +169,12 @@ static uint16_t status_flags(const stream *self, const tapemark_status_record *s
 
 static void fill_light(const stream *self, tapemark_status_record *status)
 {
-    if (self->camera.device == NULL)
+    camera_settings settings;
+    if (!camera_watch_settings(&self->camera, &settings))
         return;
-    const camera_settings *settings = camera_settings_of(self->camera.device);
-    int32_t exposure_us = self->last.exposure_us > 0 ? self->last.exposure_us : settings->exposure_us;
+    int32_t exposure_us = self->last.exposure_us > 0 ? self->last.exposure_us : settings.exposure_us;
     status->exposure_us = exposure_us > 0 ? (uint32_t)exposure_us : 0;
-    status->gain_hundredths = to_u16((int64_t)llround(settings->gain * 100));
+    status->gain_hundredths = to_u16((int64_t)llround(settings.gain * 100));
 }
 
 static void fill_status(stream *self, int64_t now_ns, tapemark_status_record *status)
@@ -177,7 +190,7 @@ static void fill_status(stream *self, int64_t now_ns, tapemark_status_record *st
     status->frames_dropped = (uint16_t)self->line.dropped_total;
     status->records_dropped = (uint16_t)record_line_records_dropped(&self->line);
     status->errors = (uint16_t)(self->counts.mistakes + self->counts.line_failures + self->camera.failures +
-                                self->gpio.failures);
+                                self->gpio.failures + snapshots_failures(self->snapshots));
     status->flags = status_flags(self, status);
 }
 

@@ -30,7 +30,7 @@ static int64_t wake_time_ns(const stream *self, const record_sink_wait *line, in
 {
     int64_t wake_ns = sooner(line->wake_ns, camera_watch_wake_ns(&self->camera));
     wake_ns = sooner(wake_ns, self->counts.last_status_ns + status_interval_ns + status_patience_ns);
-    if (camera_watch_is_lost(&self->camera))
+    if (camera_watch_is_lost(&self->camera) && !camera_watch_is_over(&self->camera))
         wake_ns = sooner(wake_ns, self->next_loss_ns);
     if (service_alive_interval_ns(self->service) > 0)
         wake_ns = sooner(wake_ns, self->next_alive_ns);
@@ -87,10 +87,10 @@ static void answer_commands(stream *self)
 static void take_camera(stream *self)
 {
     camera_frame got;
-    if (camera_watch_next(&self->camera, &self->settings, camera_clock_ns(), &got)) {
-        stream_take_frame(self, &got);
-        camera_release(self->camera.device);
-        self->next_loss_ns = 0;
+    int64_t now_ns = camera_clock_ns();
+    if (camera_watch_next(&self->camera, &self->settings, now_ns, &got)) {
+        stream_take_frame(self, &got, now_ns);
+        camera_watch_release(&self->camera);
     }
 }
 
@@ -99,7 +99,7 @@ static void keep_times(stream *self, int64_t now_ns)
     bool frame_went = self->line.frames_sent != self->counts.frames_sent;
     int64_t since_status_ns = now_ns - self->counts.last_status_ns;
     self->counts.frames_sent = self->line.frames_sent;
-    if (camera_watch_is_lost(&self->camera) && self->camera.state != CAMERA_WATCH_ENDED)
+    if (camera_watch_is_lost(&self->camera) && !camera_watch_is_over(&self->camera))
         stream_tell_loss(self, now_ns);
     if (since_status_ns >= status_interval_ns + (frame_went ? 0 : status_patience_ns))
         stream_tell_status(self, now_ns);
@@ -129,7 +129,7 @@ static int exit_status(stream *self, int64_t now_ns)
 {
     if (record_sink_state_of(self->line.sink) == RECORD_SINK_ENDED)
         return EXIT_FAILURE;
-    if (self->camera.recorded && self->camera.state == CAMERA_WATCH_LOST)
+    if (camera_watch_has_failed(&self->camera))
         return EXIT_FAILURE;
     if (!has_ended(self, now_ns))
         return -1;

@@ -31,6 +31,7 @@ const char stream_options_help[] =
     "  --preview PORT       a page with the live picture, on this computer alone; HOST:PORT for others, too\n"
     "  --record PATH        writes what the camera gives: PATH.y4m, or raw with its times beside it\n"
     "  --repeat yes         a recording begins again at its end\n"
+    "  --still yes          the camera's picture may stand still to the last bit, as a test pattern does\n"
     "\n"
     "  --inverted yes       the tape is printed light on dark\n"
     "  --roll DEG           upright tapes read in this direction, clockwise from the x axis of the image\n"
@@ -61,13 +62,13 @@ static bool next_option(command_line line, int *index, option_word *option, erro
 {
     const char *word = line.words[(*index)++];
     if (strncmp(word, "--", 2) != 0 || word[2] == '\0') {
-        error_text_set(error, "expected an option, not '%.60s'; --help lists them", word);
+        error_text_set(error, "expected an option, not \"%.60s\"; --help lists them", word);
         return false;
     }
     const char *equals = strchr(word, '=');
     size_t length = equals != NULL ? (size_t)(equals - word) - 2 : strlen(word + 2);
     if (length >= sizeof option->name) {
-        error_text_set(error, "there is no option '%.60s'; --help lists them", word);
+        error_text_set(error, "there is no option \"%.60s\"; --help lists them", word);
         return false;
     }
     memcpy(option->name, word + 2, length);
@@ -111,7 +112,7 @@ static options_answer read_options(command_line line, stream_settings *settings,
             return answer;
         if (!takes_value(option.name)) {
             bool known = answer != OPTIONS_RUN;
-            error_text_set(error, known ? "--%s takes no value" : "there is no option '--%s'; --help lists them",
+            error_text_set(error, known ? "--%s takes no value" : "there is no option \"--%s\"; --help lists them",
                            option.name);
             return OPTIONS_WRONG;
         }

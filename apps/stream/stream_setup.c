@@ -45,16 +45,7 @@ static bool open_line(stream *self, const stream_settings *settings)
     error_text reason;
     if (record_line_open(&self->line, settings->output, &reason))
         return true;
-    message_tell(settings->output, reason.text);
-    return false;
-}
-
-static bool open_camera(stream *self, const stream_settings *settings)
-{
-    error_text reason;
-    if (camera_watch_begin(&self->camera, settings, &reason))
-        return true;
-    message_tell(settings->camera, reason.text);
+    message_tell(NULL, reason.text);
     return false;
 }
 
@@ -97,10 +88,15 @@ bool stream_open(stream *self, command_line command, const stream_settings *sett
         return false;
     }
     self->line.encoding = settings->encoding;
-    if (!load_map(self, settings->map) || !open_line(self, settings) || !open_camera(self, settings) ||
-        !open_preview(self, settings))
+    self->snapshots = snapshots_open();
+    if (self->snapshots == NULL) {
+        message_tell("snapshots", "not enough memory");
+        return false;
+    }
+    if (!load_map(self, settings->map) || !open_line(self, settings) || !open_preview(self, settings))
         return false;
     set_known_ids(self);
+    camera_watch_begin(&self->camera, settings);
     signal_lines_open(&self->gpio, &settings->gpio);
     self->counts.last_status_ns = self->start_ns;
     return true;
@@ -122,8 +118,8 @@ static bool same_lines(const gpio_settings *a, const gpio_settings *b)
 static void set_light(stream *self, const stream_settings *settings)
 {
     error_text reason;
-    if (self->camera.device != NULL &&
-        !camera_set_light(self->camera.device, settings->exposure_us, settings->gain, &reason)) {
+    if (self->camera.thread != NULL &&
+        !camera_thread_set_light(self->camera.thread, settings->exposure_us, settings->gain, &reason)) {
         message_tell(settings->camera, reason.text);
         self->counts.mistakes++;
     }
@@ -142,12 +138,12 @@ static void adopt(stream *self, const stream_settings *fresh)
     if (strcmp(before.output, fresh->output) != 0)
         good = open_line(self, fresh) && good;
     if (!same_camera(&before, fresh))
-        good = open_camera(self, fresh) && good;
+        camera_watch_begin(&self->camera, fresh);
     else if (before.exposure_us != fresh->exposure_us || before.gain != fresh->gain)
         set_light(self, fresh);
     if (strcmp(before.preview, fresh->preview) != 0)
         good = open_preview(self, fresh) && good;
-    if (!same_lines(&before.gpio, &fresh->gpio))
+    if (!same_lines(&before.gpio, &fresh->gpio) || !signal_lines_are_whole(&self->gpio, &fresh->gpio))
         signal_lines_open(&self->gpio, &fresh->gpio);
     if (good)
         message_tell(NULL, "settings and map were read again");
@@ -169,14 +165,16 @@ void stream_reload(stream *self)
 
 /* ---- Ending -------------------------------------------------------------------------------------------------- */
 
-void stream_close(stream *self)
+bool stream_close(stream *self)
 {
     signal_lines_close(&self->gpio);
     preview_server_close(self->preview);
     end_recording(self);
-    camera_watch_close(&self->camera);
+    snapshots_close(self->snapshots);
+    bool camera_closed = camera_watch_close(&self->camera);
     record_line_close(&self->line);
     frame_reader_release(&self->reader);
     map_table_release(&self->map);
     service_close(self->service);
+    return camera_closed;
 }

@@ -31,10 +31,14 @@ static int64_t clock_ns(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
+/* Lines behind USB or I2C may take their time, and nobody shall wait for them with the mutex. */
 static void set_line(strobe *self, bool on)
 {
     error_text reason;
-    if (!gpio_output_set(self->line, on, &reason)) {
+    pthread_mutex_unlock(&self->mutex);
+    bool done = gpio_output_set(self->line, on, &reason);
+    pthread_mutex_lock(&self->mutex);
+    if (!done) {
         self->failed = true;
         self->failure = reason;
     }
@@ -57,6 +61,8 @@ static void *run(void *context)
     while (!self->ending) {
         if (!self->planned)
             pthread_cond_wait(&self->changed, &self->mutex);
+        else if (clock_ns() >= self->off_ns)
+            self->planned = false;  /* too late to be of use */
         else if (clock_ns() < self->on_ns)
             wait_until(self, self->on_ns);
         else

@@ -22,6 +22,8 @@ int __wrap_poll(struct pollfd *waiting, nfds_t count, int timeout_ms);
 void *__wrap_mmap64(void *address, size_t size, int protection, int flags, int descriptor, off_t offset);
 int __wrap_munmap(void *address, size_t size);
 int __wrap_ioctl(int descriptor, unsigned long request, void *argument);
+int __real_clock_gettime(clockid_t clock, struct timespec *now);
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now);
 
 fake_camera fake;
 
@@ -45,7 +47,7 @@ static buffer_queue given, done;
 void fake_reset(void)
 {
     fake = (fake_camera){.modes = &usual_mode, .mode_count = 1, .buffers = FAKE_BUFFERS, .crops = true,
-                         .field = V4L2_FIELD_NONE,
+                         .field = V4L2_FIELD_NONE, .maps = -1,
                          .capabilities = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING,
                          .flags = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE};
     unplugged = false;
@@ -219,6 +221,8 @@ static uint32_t stride_of(uint32_t fourcc, uint32_t width)
 static int set_format(struct v4l2_format *format)
 {
     struct v4l2_pix_format *picture = &format->fmt.pix;
+    if (fake.allocated > 0)
+        return fail_with(EBUSY);
     bool planar = picture->pixelformat == V4L2_PIX_FMT_NV12 || picture->pixelformat == V4L2_PIX_FMT_YUV420;
     uint32_t stride = stride_of(picture->pixelformat, picture->width);
     picture->bytesperline = stride > 0 ? stride + fake.extra_stride : 0;
@@ -298,6 +302,7 @@ static int request_buffers(struct v4l2_requestbuffers *request)
 {
     if (request->count > fake.buffers)
         request->count = fake.buffers;
+    fake.allocated = (int)request->count;
     given.count = 0;
     done.count = 0;
     return 0;
@@ -388,6 +393,7 @@ int __wrap_ioctl(int descriptor, unsigned long request, void *argument)
 {
     if (descriptor < 0 || descriptor != device_descriptor)
         return fail_with(EBADF);
+    fake.calls++;
     if (unplugged)
         return fail_with(ENODEV);
     if (request == failing_request && failing_after-- <= 0 && failing_times != 0) {
@@ -423,6 +429,7 @@ int __wrap_close(int descriptor)
     if (descriptor >= 0 && descriptor == device_descriptor) {
         fake.open_count--;
         device_descriptor = -1;
+        fake.allocated = 0;
         stream(false);
     }
     return __real_close(descriptor);
@@ -432,6 +439,11 @@ void *__wrap_mmap64(void *address, size_t size, int protection, int flags, int d
 {
     if (descriptor < 0 || descriptor != device_descriptor)
         return __real_mmap64(address, size, protection, flags, descriptor, offset);
+    if (fake.maps == 0) {
+        errno = ENOMEM;
+        return MAP_FAILED;
+    }
+    fake.maps -= fake.maps > 0;
     fake.mapped++;
     return memory[offset / FAKE_BUFFER_BYTES];
 }
@@ -442,6 +454,17 @@ int __wrap_munmap(void *address, size_t size)
         return __real_munmap(address, size);
     fake.mapped--;
     return 0;
+}
+
+int __wrap_clock_gettime(clockid_t clock, struct timespec *now)
+{
+    int result = __real_clock_gettime(clock, now);
+    if (clock == CLOCK_BOOTTIME) {
+        __real_clock_gettime(CLOCK_MONOTONIC, now);
+        int64_t time_ns = (int64_t)now->tv_sec * 1000000000 + now->tv_nsec + fake.slept_ns;
+        *now = (struct timespec){(time_t)(time_ns / 1000000000), (long)(time_ns % 1000000000)};
+    }
+    return result;
 }
 
 /* Nothing is waited for: what would come in that time comes at once, or never. */

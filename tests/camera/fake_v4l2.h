@@ -55,11 +55,15 @@ typedef struct fake_camera {
     short poll_events;                    /* what poll() answers besides */
     bool source_changed;
     uint32_t wrong_index;                 /* 0, or what DQBUF answers in place of the index */
+    int64_t slept_ns;                     /* by which CLOCK_BOOTTIME is ahead */
+    int maps;                             /* that mmap() grants; -1: all */
 
     /* What happened. */
     uint32_t sequence;
     int open_count;
     int mapped;
+    int allocated;                        /* buffers, for which no format can be set */
+    int calls;                            /* of ioctl() */
     int queued;
     bool streaming;
     struct v4l2_pix_format picture;

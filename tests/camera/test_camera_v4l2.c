@@ -1,33 +1,8 @@
 /* Frames of Video4Linux cameras, on a device that does what the test wants: which are given, which are counted, and
- * what happens when any call fails at any time. */
+ * what their time stamps come to. */
 #include "v4l2_fixture.h"
 
-#include <errno.h>
-#include <poll.h>
-
-/* What libcamera sees plays no part here. */
-void __wrap_camera_libcamera_list(bool built_in, camera_teller tell, void *context);
-camera *__wrap_camera_libcamera_open(const char *name, error_text *error);
-
-void __wrap_camera_libcamera_list(bool built_in, camera_teller tell, void *context)
-{
-    (void)built_in;
-    (void)tell;
-    (void)context;
-}
-
-camera *__wrap_camera_libcamera_open(const char *name, error_text *error)
-{
-    error_text_set(error, "asked for camera %s of libcamera", name);
-    return NULL;
-}
-
-static int reset(void **state)
-{
-    (void)state;
-    fake_reset();
-    return 0;
-}
+#include <sys/resource.h>
 
 static void frames_come_one_by_one(void **state)
 {
@@ -197,126 +172,74 @@ static void a_driver_that_never_lets_go_is_left(void **state)
     finish(&f);
 }
 
-static void an_unplugged_camera_is_gone(void **state)
+/* Programs that poll() themselves ask without waiting, each time anew: then, too, at most one frame is too old. */
+static void who_polls_is_not_kept_waiting_for_newer_frames(void **state)
 {
     (void)state;
     fixture f = ready(NULL);
     fake_take(1);
-    assert_int_equal(next(&f), CAMERA_FRAME);
-    fake_unplug();
-    assert_int_equal(next(&f), CAMERA_GONE);
-    assert_non_null(strstr(f.error.text, "unplugged"));
-    finish(&f);
-}
-
-static void what_poll_reports_is_looked_into(void **state)
-{
-    (void)state;
-    fixture f = ready(NULL);
-    fake.poll_events = POLLERR;
-    assert_int_equal(camera_next(f.device, 1000, &f.got, &f.error), CAMERA_FAILED);
-    finish(&f);
-
-    fake_reset();
-    f = ready(NULL);
-    fake.source_changed = true;
-    assert_int_equal(next(&f), CAMERA_FAILED);
-    assert_non_null(strstr(f.error.text, "changed the size"));
-    finish(&f);
-}
-
-static void a_buffer_that_was_not_given_is_an_error(void **state)
-{
-    (void)state;
-    fixture f = ready(NULL);
-    fake.wrong_index = 1000;
+    assert_int_equal(camera_next(f.device, 0, &f.got, &f.error), CAMERA_FRAME);
+    fake.age_ns = INT64_C(5000000000);
     fake_take(1);
-    assert_int_equal(next(&f), CAMERA_FAILED);
-    finish(&f);
-}
-
-static void failures_that_pass_are_borne(void **state)
-{
-    (void)state;
-    fixture f = ready(NULL);
-    fake_take(1);
-    fake_fail(VIDIOC_DQBUF, EIO, 0, 3);
-    fake.comes_while_waited = 1;
-    assert_int_equal(next(&f), CAMERA_FRAME);
-    assert_int_equal(camera_counts_of(f.device).damaged, 3);
-    fake_fail(VIDIOC_DQBUF, EIO, 0, -1);
-    assert_int_equal(next(&f), CAMERA_FAILED);
-    finish(&f);
-}
-
-static const unsigned long requests[] = {
-    VIDIOC_QUERYCAP, VIDIOC_ENUM_FMT, VIDIOC_ENUM_FRAMESIZES, VIDIOC_ENUM_FRAMEINTERVALS, VIDIOC_G_FMT, VIDIOC_S_FMT,
-    VIDIOC_G_PARM, VIDIOC_S_PARM, VIDIOC_G_SELECTION, VIDIOC_S_SELECTION, VIDIOC_QUERYCTRL, VIDIOC_S_CTRL,
-    VIDIOC_REQBUFS, VIDIOC_QUERYBUF, VIDIOC_QBUF, VIDIOC_DQBUF, VIDIOC_STREAMON, VIDIOC_STREAMOFF,
-    VIDIOC_SUBSCRIBE_EVENT, VIDIOC_DQEVENT,
-};
-
-static void expect_one_line(const error_text *error)
-{
-    assert_int_not_equal(strlen(error->text), 0);
-    assert_null(strchr(error->text, '\n'));
-}
-
-/* A whole session in which one ioctl fails in one way from some call on. */
-static void run_session(unsigned long request, int failure, int after, int times)
-{
-    const camera_wishes wishes = {.exposure_us = 2000, .gain = 5};
-    error_text error = {""};
-    camera_frame got;
-    camera_status status = CAMERA_TIMEOUT;
-    fake_reset();
-    add_usual_controls();
-    fake_fail(request, failure, after, times);
-    camera *device = camera_open("v4l2:/dev/video0", &error);
-    bool configured = device != NULL && camera_configure(device, &wishes, &error);
-    if (device == NULL || !configured)
-        expect_one_line(&error);
-    for (int i = 0; configured && i < 12 && (status == CAMERA_FRAME || status == CAMERA_TIMEOUT); i++) {
-        fake_take(i % 4);
-        status = camera_next(device, 20, &got, &error);
-        assert_int_not_equal(status, CAMERA_END);
-    }
-    if (status == CAMERA_GONE || status == CAMERA_FAILED)
-        expect_one_line(&error);
-    if (configured)
-        camera_set_light(device, 1000, 1, &error);
-    camera_close(device);
-    assert_int_equal(fake.open_count, 0);
-    assert_int_equal(fake.mapped, 0);
-}
-
-static void any_failure_at_any_time_is_survived(void **state)
-{
-    static const int failures[] = {EINVAL, EIO, ENODEV, ENXIO, ENOTTY, EBUSY, ENOMEM, ENOSPC, EPERM, EAGAIN, EPIPE,
-                                   EFAULT, ERANGE};
-    (void)state;
-    for (size_t r = 0; r < COUNT_OF(requests); r++)
-        for (size_t f = 0; f < COUNT_OF(failures); f++)
-            for (int after = 0; after < 12; after++) {
-                run_session(requests[r], failures[f], after, 1);
-                run_session(requests[r], failures[f], after, -1);
-            }
-}
-
-static void signals_change_nothing(void **state)
-{
-    (void)state;
-    for (size_t r = 0; r < COUNT_OF(requests); r++) {
-        fake_reset();
-        add_usual_controls();
-        fake_fail(requests[r], EINTR, 0, 3);
-        fixture f = ready(&(camera_wishes){.exposure_us = 2000});
+    assert_int_equal(camera_next(f.device, 0, &f.got, &f.error), CAMERA_TIMEOUT);
+    for (unsigned i = 0; i < 10; i++) {
         fake_take(1);
-        assert_int_equal(next(&f), CAMERA_FRAME);
-        finish(&f);
-        /* But not for ever. */
-        run_session(requests[r], EINTR, 0, -1);
+        assert_int_equal(camera_next(f.device, 0, &f.got, &f.error), CAMERA_FRAME);
+        assert_int_equal(f.got.dropped, i == 0);
     }
+    /* And when they come at once again, that is what counts. */
+    fake.age_ns = 0;
+    for (unsigned i = 0; i < 3; i++) {
+        fake_take(1);
+        assert_int_equal(camera_next(f.device, 0, &f.got, &f.error), CAMERA_FRAME);
+    }
+    fake.age_ns = INT64_C(5000000000);
+    fake_take(1);
+    assert_int_equal(camera_next(f.device, 0, &f.got, &f.error), CAMERA_TIMEOUT);
+    finish(&f);
+}
+
+static int64_t time_of_frame(int64_t slept_ns, int64_t age_ns, uint32_t flags)
+{
+    fake_reset();
+    fixture f = ready(NULL);
+    fake.slept_ns = slept_ns;
+    fake.age_ns = age_ns;
+    fake.flags = flags;
+    fake_take(1);
+    int64_t before_ns = camera_clock_ns();
+    assert_int_equal(next(&f), CAMERA_FRAME);
+    int64_t time_ns = f.got.image.time_ns - before_ns;
+    finish(&f);
+    return time_ns;
+}
+
+static void expect_about(int64_t time_ns, int64_t expected_ms)
+{
+    int64_t time_ms = (time_ns + (time_ns < 0 ? -1 : 1) * 500000) / 1000000;
+    if (time_ms < expected_ms - 30 || time_ms > expected_ms + 30)
+        fail_msg("%lld ms instead of about %lld", (long long)time_ms, (long long)expected_ms);
+}
+
+/* Times are given as milliseconds from now. */
+static void time_stamps_are_of_the_clock_that_goes_on(void **state)
+{
+    const uint32_t start = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_SOE;
+    const uint32_t end = V4L2_BUF_FLAG_TIMESTAMP_MONOTONIC | V4L2_BUF_FLAG_TSTAMP_SRC_EOF;
+    const int64_t ms_ns = 1000000, hour_ns = INT64_C(3600000000000);
+    (void)state;
+    expect_about(time_of_frame(0, 200 * ms_ns, start), -200);
+    expect_about(time_of_frame(hour_ns, 200 * ms_ns, start), -200);
+    /* Of CLOCK_BOOTTIME, on a machine that slept an hour. */
+    expect_about(time_of_frame(hour_ns, 200 * ms_ns - hour_ns, start), -200);
+    /* A little ahead of now: not an hour ago, on that machine or another. */
+    expect_about(time_of_frame(hour_ns, -90 * ms_ns, start), 0);
+    expect_about(time_of_frame(0, -90 * ms_ns, start), 0);
+    expect_about(time_of_frame(hour_ns, 60 * 1000 * ms_ns, start), 0);
+    /* No clock that is known. */
+    expect_about(time_of_frame(0, 200 * ms_ns, V4L2_BUF_FLAG_TIMESTAMP_UNKNOWN), -500);
+    /* Half a frame, of one a second, before its end. */
+    expect_about(time_of_frame(0, 200 * ms_ns, end), -700);
 }
 
 static void all_formats_are_given_as_they_are(void **state)
@@ -385,6 +308,21 @@ static void jpegs_become_gray(void **state)
     fake_take(1);
     assert_int_equal(next(&f), CAMERA_TIMEOUT);
     assert_int_equal(camera_counts_of(f.device).damaged, 2);
+
+    /* Of another size: a gigabyte of it, before anybody looks. */
+    enum { SIZE_OFFSET = 76 };
+    static uint8_t huge[sizeof jpeg];
+    struct rusage before, after;
+    memcpy(huge, jpeg, sizeof jpeg);
+    memset(huge + SIZE_OFFSET, 0x7f, 4);
+    fake.content = huge;
+    fake.content_size = sizeof huge;
+    fake_take(1);
+    getrusage(RUSAGE_SELF, &before);
+    assert_int_equal(next(&f), CAMERA_TIMEOUT);
+    getrusage(RUSAGE_SELF, &after);
+    assert_in_range(after.ru_maxrss - before.ru_maxrss, 0, 100 * 1024);
+    assert_int_equal(camera_counts_of(f.device).damaged, 3);
     finish(&f);
 }
 
@@ -400,12 +338,8 @@ int main(void)
         cmocka_unit_test_setup(a_repeated_frame_is_not_given, reset),
         cmocka_unit_test_setup(a_camera_without_frames_times_out, reset),
         cmocka_unit_test_setup(a_driver_that_never_lets_go_is_left, reset),
-        cmocka_unit_test_setup(an_unplugged_camera_is_gone, reset),
-        cmocka_unit_test_setup(what_poll_reports_is_looked_into, reset),
-        cmocka_unit_test_setup(a_buffer_that_was_not_given_is_an_error, reset),
-        cmocka_unit_test_setup(failures_that_pass_are_borne, reset),
-        cmocka_unit_test_setup(any_failure_at_any_time_is_survived, reset),
-        cmocka_unit_test_setup(signals_change_nothing, reset),
+        cmocka_unit_test_setup(who_polls_is_not_kept_waiting_for_newer_frames, reset),
+        cmocka_unit_test_setup(time_stamps_are_of_the_clock_that_goes_on, reset),
         cmocka_unit_test_setup(all_formats_are_given_as_they_are, reset),
         cmocka_unit_test_setup(jpegs_become_gray, reset),
     };

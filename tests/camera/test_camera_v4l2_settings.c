@@ -36,7 +36,7 @@ static void expect_refusal(const char *name, const camera_wishes *wishes, const 
     assert_int_equal(fake.mapped, 0);
 }
 
-static int reset(void **state)
+static int reset_all(void **state)
 {
     (void)state;
     fake_reset();
@@ -284,15 +284,15 @@ static void cameras_are_listed_and_found(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup(opening_tells_what_is_wrong, reset),
-        cmocka_unit_test_setup(answers_that_cannot_be_are_refused, reset),
-        cmocka_unit_test_setup(wishes_are_checked, reset),
-        cmocka_unit_test_setup(exposure_and_gain_are_set, reset),
-        cmocka_unit_test_setup(exposure_in_rows_is_set, reset),
-        cmocka_unit_test_setup(the_time_is_that_of_the_middle_of_the_exposure, reset),
-        cmocka_unit_test_setup(a_region_is_cut_out, reset),
-        cmocka_unit_test_setup(sizes_in_steps_and_no_sizes_at_all, reset),
-        cmocka_unit_test_setup(cameras_are_listed_and_found, reset),
+        cmocka_unit_test_setup(opening_tells_what_is_wrong, reset_all),
+        cmocka_unit_test_setup(answers_that_cannot_be_are_refused, reset_all),
+        cmocka_unit_test_setup(wishes_are_checked, reset_all),
+        cmocka_unit_test_setup(exposure_and_gain_are_set, reset_all),
+        cmocka_unit_test_setup(exposure_in_rows_is_set, reset_all),
+        cmocka_unit_test_setup(the_time_is_that_of_the_middle_of_the_exposure, reset_all),
+        cmocka_unit_test_setup(a_region_is_cut_out, reset_all),
+        cmocka_unit_test_setup(sizes_in_steps_and_no_sizes_at_all, reset_all),
+        cmocka_unit_test_setup(cameras_are_listed_and_found, reset_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

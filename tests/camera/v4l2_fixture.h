@@ -13,6 +13,14 @@ typedef struct fixture {
     error_text error;
 } fixture;
 
+/* Before each test. */
+static inline int reset(void **state)
+{
+    (void)state;
+    fake_reset();
+    return 0;
+}
+
 /* Opens and sets up; both must succeed. */
 static inline fixture ready(const camera_wishes *wishes)
 {

@@ -200,7 +200,8 @@ def ms(length):
 def check_page(page):
     complaints = []
     for name, record in page.records.items():
-        found = [text for length in (record.sentence_max(), record.packet_max()) for text in (str(length), ms(length))]
+        lengths = (record.sentence_max(), record.packet_max())
+        found = [text for length in lengths for text in (str(length), ms(length))]
         if page.stated[name] != found:
             complaints.append(f"{name}: the page says {page.stated[name]}, its fields make {found}")
         if record.sentence_max() > 82 or record.packet_max() > 64:

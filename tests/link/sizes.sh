@@ -1,13 +1,14 @@
 #!/bin/sh
-# Usage: sizes.sh LINK_FOLDER CC SIZE FLAG...
+# Usage: sizes.sh PROCESSOR LINK_FOLDER CC SIZE FLAG...
 # What the receiver adds to a program for a microcontroller, with all that it pulls in from the compiler's libraries:
 # flash, memory, and the stack were all its functions to call each other. Held against limits a little above what the
 # page of the format says.
 set -eu
-link=$1
-compiler=$2
-size=$3
-shift 3
+processor=$1
+link=$2
+compiler=$3
+size=$4
+shift 4
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -57,8 +58,9 @@ check()
     flash_limit=$2
     memory_limit=$3
     shift 3
-    "$compiler" -std=c99 -Os -ffunction-sections -fdata-sections -fstack-usage -Wall -Wextra -Wconversion -Werror \
-        "-I$link/src" "$@" -c "$link/src/tapemark_receiver.c" -o "$work/receiver.o"
+    "$compiler" -std=c99 -pedantic-errors -Wall -Wextra -Wconversion -Wshadow -Werror "-I$link/src" \
+        -Os -ffunction-sections -fdata-sections -fstack-usage "$@" -c "$link/src/tapemark_receiver.c" \
+        -o "$work/receiver.o"
     # Without hardware for it, floating point shows in the names of the compiler's helpers.
     if "${size%size}nm" -u "$work/receiver.o" | grep -E '[a-z][sd]f[0-9]?$|__aeabi_[fd]|alloc'; then
         echo "$name: that is floating point or heap"
@@ -70,7 +72,8 @@ check()
     set -- $(weigh "$work/with") $(weigh "$work/without")
     flash=$(($1 - $3))
     memory=$(($2 - $4))
-    echo "$name: flash $flash bytes, memory $memory bytes, stack below $(stack_bytes "$work/receiver.su") bytes"
+    stack=$(stack_bytes "$work/receiver.su")
+    echo "receiver, $processor, $name: flash $flash bytes, memory $memory bytes, stack below $stack bytes"
     if [ "$flash" -gt "$flash_limit" ] || [ "$memory" -gt "$memory_limit" ] || [ "$flash" -lt 500 ]; then
         echo "$name: expected at most $flash_limit bytes of flash and $memory_limit of memory"
         status=1

@@ -112,7 +112,8 @@ static void a_tm_out_of_range_is_refused(void **state)
         bool sent;
     } cases[] = {
         {3, 7, 3, 3599, 100, true},           {2, 3, 2, 0, 0, false},          {33, 7, 3, 0, 0, false},
-        {33, 0, 0, 0, 0, false},              {255, 7, 3, 0, 0, false},        {3, 8, 3, 0, 0, false},          {3, 7, 4, 0, 0, false},
+        {33, 0, 0, 0, 0, false},              {255, 7, 3, 0, 0, false},        {3, 8, 3, 0, 0, false},
+        {3, 7, 4, 0, 0, false},
         {32, 0xffffffff, 32, 0, 0, true},     {31, 0xffffffff, 0, 0, 0, false}, {31, 0x7fffffff, 0, 0, 0, true},
         {6, 0x20, 0, 3600, 0, false},         {6, 0x20, 0, 0, 101, false},
     };
@@ -194,6 +195,58 @@ static void fields_without_their_flag_are_left_out(void **state)
     }
 }
 
+/* A record with anything in it, of any type: a good one with some of its bytes changed, or nothing but chance. */
+static tapemark_record random_rubbish(uint32_t *random)
+{
+    tapemark_record record = random_record(random, (uint8_t)(1 + random_below(random, RECORD_TYPES)));
+    uint8_t *const bytes = (uint8_t *)&record;
+    for (uint32_t blows = random_below(random, 4); blows > 0; blows--)
+        bytes[random_below(random, sizeof record)] = (uint8_t)(next_random(random) >> 8);
+    if (random_below(random, 8) == 0)
+        for (size_t i = 1; i < sizeof record; i++)
+            bytes[i] = (uint8_t)(next_random(random) >> 8);
+    return record;
+}
+
+/* Into a buffer of just that size, so that a sanitizer sees a byte too many. */
+static size_t write_within(const tapemark_record *record, tapemark_encoding encoding, size_t size)
+{
+    uint8_t *buffer = malloc(size > 0 ? size : 1);
+    assert_non_null(buffer);
+    buffer[0] = 0x5a;
+    const size_t written = tapemark_record_write(record, encoding, buffer, size);
+    assert_true(written <= size);
+    if (size == 0)
+        assert_int_equal(buffer[0], 0x5a);
+    free(buffer);
+    return written;
+}
+
+static void whatever_a_record_holds_it_is_sent_right_or_refused(void **state)
+{
+    (void)state;
+    enum { TRIALS = 60000 };
+    uint32_t random = 4;
+    unsigned sent = 0;
+    for (int trial = 0; trial < TRIALS; trial++) {
+        const tapemark_record record = random_rubbish(&random);
+        write_within(&record, random_below(&random, 2) ? TAPEMARK_PACKETS : TAPEMARK_SENTENCES,
+                     random_below(&random, TAPEMARK_SENTENCE_MAX_BYTES));
+        if (!is_sent(&record))
+            continue;
+        sent++;
+        for (tapemark_encoding encoding = TAPEMARK_SENTENCES; encoding <= TAPEMARK_PACKETS; encoding++) {
+            const message written = message_of(&record, encoding);
+            tapemark_receiver receiver = {0};
+            assert_true(written.size <= (encoding == TAPEMARK_PACKETS ? 64 : 82));
+            assert_int_equal(push_message(&receiver, &written), 1);
+            assert_same_record(&receiver.record, &record);
+        }
+    }
+    print_message("%u of %d sent\n", sent, TRIALS);
+    assert_in_range(sent, TRIALS / 4, TRIALS - TRIALS / 8);
+}
+
 static void any_text_is_made_to_fit(void **state)
 {
     (void)state;
@@ -222,6 +275,7 @@ int main(void)
         cmocka_unit_test(a_heading_out_of_range_matters_when_it_is_known),
         cmocka_unit_test(texts_out_of_range_are_refused),
         cmocka_unit_test(fields_without_their_flag_are_left_out),
+        cmocka_unit_test(whatever_a_record_holds_it_is_sent_right_or_refused),
         cmocka_unit_test(any_text_is_made_to_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -67,20 +67,20 @@ int fake_set(fake_line *line, bool on)
     return 0;
 }
 
-int fake_read_events(const fake_line *line, int most)
+int fake_read_events(const fake_line *line, int64_t *times_ns, int most)
 {
-    char bytes[64];
     if (fake_chips_fail) {
         errno = ENODEV;
         return -1;
     }
-    return (int)read(line->events[0], bytes, (size_t)most);
+    ssize_t size = read(line->events[0], times_ns, (size_t)most * sizeof *times_ns);
+    return size < 0 ? -1 : (int)((size_t)size / sizeof *times_ns);
 }
 
-void fake_drive(fake_line *line, bool level)
+void fake_drive(fake_line *line, bool level, int64_t time_ns)
 {
     bool becomes_on = level != line->level && (line->active_low ? !level : level);
     line->level = level;
-    if (becomes_on && write(line->events[1], "", 1) != 1)
+    if (becomes_on && write(line->events[1], &time_ns, sizeof time_ns) != sizeof time_ns)
         line->level = !level;
 }

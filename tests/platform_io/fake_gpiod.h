@@ -6,8 +6,10 @@
 #define FAKE_GPIOD_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
-enum { FAKE_LINES = 4 };
+/* Events are at most as many as the kernel keeps of a line. */
+enum { FAKE_LINES = 4, FAKE_EVENTS_MAX = 16 };
 
 typedef enum fake_use { FAKE_FREE, FAKE_OUTPUT, FAKE_INPUT } fake_use;
 
@@ -16,7 +18,7 @@ typedef struct fake_line {
     bool level;        /* the wire's, whatever counts as on */
     bool active_low;
     int pull;          /* 1 up, -1 down */
-    int events[2];     /* a pipe: a byte an event */
+    int events[2];     /* a pipe: the time of each event */
     int set_calls;
 } fake_line;
 
@@ -37,9 +39,9 @@ fake_chip *fake_open(const char *path);
 bool fake_take(fake_line *line, fake_use use, bool active_low, int pull);
 void fake_free(fake_line *line);
 int fake_set(fake_line *line, bool on);
-int fake_read_events(const fake_line *line, int most);
+int fake_read_events(const fake_line *line, int64_t *times_ns, int most);
 
-/* What happens on the wire. */
-void fake_drive(fake_line *line, bool level);
+/* What happens on the wire, and when. */
+void fake_drive(fake_line *line, bool level, int64_t time_ns);
 
 #endif

@@ -29,8 +29,13 @@ struct gpiod_line_request {
     unsigned offset;
 };
 
+struct gpiod_edge_event {
+    uint64_t time_ns;
+};
+
 struct gpiod_edge_event_buffer {
-    size_t capacity;
+    size_t capacity, count;
+    struct gpiod_edge_event events[FAKE_EVENTS_MAX];
 };
 
 static void *new_handle(size_t size)
@@ -200,14 +205,32 @@ int gpiod_line_request_get_fd(struct gpiod_line_request *request)
 int gpiod_line_request_read_edge_events(struct gpiod_line_request *request, struct gpiod_edge_event_buffer *buffer,
                                         size_t max_events)
 {
+    int64_t times_ns[FAKE_EVENTS_MAX];
     errno = EINVAL;
-    return max_events <= buffer->capacity ? fake_read_events(request->line, (int)max_events) : -1;
+    buffer->count = 0;
+    if (max_events > buffer->capacity)
+        return -1;
+    int count = fake_read_events(request->line, times_ns, (int)max_events);
+    for (int i = 0; i < count; i++)
+        buffer->events[buffer->count++].time_ns = (uint64_t)times_ns[i];
+    return count;
+}
+
+struct gpiod_edge_event *gpiod_edge_event_buffer_get_event(struct gpiod_edge_event_buffer *buffer, unsigned long index)
+{
+    errno = EINVAL;
+    return index < buffer->count ? &buffer->events[index] : NULL;
+}
+
+uint64_t gpiod_edge_event_get_timestamp_ns(struct gpiod_edge_event *event)
+{
+    return event->time_ns;
 }
 
 struct gpiod_edge_event_buffer *gpiod_edge_event_buffer_new(size_t capacity)
 {
     struct gpiod_edge_event_buffer *buffer = new_handle(sizeof *buffer);
-    buffer->capacity = capacity;
+    buffer->capacity = capacity < FAKE_EVENTS_MAX ? capacity : FAKE_EVENTS_MAX;
     return buffer;
 }
 

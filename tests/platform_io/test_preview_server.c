@@ -100,7 +100,7 @@ static void test_the_page_shows_the_stream(void **state)
 {
     (void)state;
     preview_server *server = open_server(NULL, NULL);
-    get(server, "GET / HTTP/1.1\r\nHost: x\r\n\r\n", answer);
+    get(server, "GET / HTTP/1.1\r\nHost: localhost:80\r\n\r\n", answer);
     assert_int_equal(strncmp(answer, "HTTP/1.0 200 OK\r\nContent-Type: text/html\r\n", 42), 0);
     assert_non_null(strstr(answer, "<img id=\"live\" src=\"/stream\""));
     assert_non_null(strstr(answer, "</html>"));
@@ -234,6 +234,8 @@ static void test_requests_that_make_no_sense_are_answered(void **state)
     assert_int_equal(strncmp(answer, "HTTP/1.0 404 ", 13), 0);
     get(server, "GET /streams HTTP/1.1\r\n\r\n", answer);
     assert_int_equal(strncmp(answer, "HTTP/1.0 404 ", 13), 0);
+    get(server, "GET / HTTP/1.1\r\nHost: example.org\r\n\r\n", answer);
+    assert_int_equal(strncmp(answer, "HTTP/1.0 403 ", 13), 0);
     get(server, "\r\n\r\n", answer);
     assert_int_equal(strncmp(answer, "HTTP/1.0 405 ", 13), 0);
     memset(endless, 'x', 4095);

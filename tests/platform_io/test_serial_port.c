@@ -10,6 +10,9 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -27,11 +30,12 @@ struct sp_port {
 static struct sp_port *known;  /* the one that was looked up last */
 static int ports_there;
 static bool refuses_rate;
+static bool knows_none;  /* as libserialport does not know pseudo terminals */
 static int flushes;
 
 enum sp_return sp_get_port_by_name(const char *portname, struct sp_port **port_ptr)
 {
-    if (strncmp(portname, "/dev/pts/", 9) != 0)
+    if (knows_none || strncmp(portname, "/dev/pts/", 9) != 0)
         return SP_ERR_ARG;
     known = calloc(1, sizeof *known);
     strncpy(known->name, portname, sizeof known->name - 1);
@@ -202,6 +206,62 @@ static void test_links_are_followed(void **state)
     close(master);
 }
 
+static void test_one_program_at_a_time_has_a_port(void **state)
+{
+    error_text error;
+    (void)state;
+    for (int round = 0; round < 2; round++) {
+        knows_none = round == 1;
+        int master = open_terminal();
+        int other = open(ptsname(master), O_RDWR | O_NOCTTY);
+        assert_int_equal(flock(other, LOCK_EX | LOCK_NB), 0);
+        assert_null(serial_port_open(ptsname(master), 115200, &error));
+        assert_string_equal(error.text, "is used by another program");
+        assert_int_equal(ports_there, 0);
+        close(other);
+        serial_port *port = serial_port_open(ptsname(master), 115200, &error);
+        assert_non_null(port);
+        other = open(ptsname(master), O_RDWR | O_NOCTTY);
+        assert_int_equal(flock(other, LOCK_EX | LOCK_NB), -1);
+        close(other);
+        serial_port_close(port);
+        close(master);
+    }
+    knows_none = false;
+}
+
+/* Of the users that run this, root alone gets past what keeps others out. */
+static void become_somebody(void)
+{
+    const uid_t nobody = 65534;
+    if (getuid() == 0 && setuid(nobody) != 0)
+        _exit(2);
+}
+
+static void test_a_pseudo_terminal_can_be_opened_again(void **state)
+{
+    error_text error;
+    int status;
+    (void)state;
+    int master = open_terminal();
+    assert_int_equal(chmod(ptsname(master), 0666), 0);
+    pid_t child = fork();
+    if (child == 0) {
+        become_somebody();
+        knows_none = true;
+        for (int i = 0; i < 3; i++) {
+            serial_port *port = serial_port_open(ptsname(master), 115200, &error);
+            if (port == NULL)
+                _exit(1);
+            serial_port_close(port);
+        }
+        _exit(0);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_int_equal(status, 0);
+    close(master);
+}
+
 static void check_listed(void *context, const serial_port_description *description)
 {
     int number = (*(int *)context)++;
@@ -224,6 +284,8 @@ int main(void)
         cmocka_unit_test(test_a_port_is_set_up_and_closed_without_waiting),
         cmocka_unit_test(test_a_rate_that_a_port_does_not_have_is_told),
         cmocka_unit_test(test_links_are_followed),
+        cmocka_unit_test(test_one_program_at_a_time_has_a_port),
+        cmocka_unit_test(test_a_pseudo_terminal_can_be_opened_again),
         cmocka_unit_test(test_ports_are_listed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -71,6 +71,8 @@ static void become(const stream_host *host, const char *program, const char *con
     /* A program that outlives a test would find another test's terminal under the name of its own. */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(said, STDERR_FILENO);
+    if (host->output > 0)
+        dup2(host->output, STDOUT_FILENO);
     execv(program, words);
     _exit(127);
 }

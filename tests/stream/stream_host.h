@@ -16,6 +16,7 @@ typedef struct stream_host {
     int line;                /* our end of the terminal; -1: the program was given none */
     int device;              /* its end, held open so that the program may come and go; -1 after host_unplug() */
     char device_path[64];
+    int output;              /* the program's standard output; 0: ours */
     int said_pipe;
     char said[HOST_SAID_BYTES];  /* on standard error so far */
     size_t said_size;

@@ -103,29 +103,36 @@ static void options_that_ask_are_told_apart(void **state)
 static void wrong_options_are_named(void **state)
 {
     (void)state;
-    REFUSES("expected an option, not 'walk.y4m'; --help lists them", "walk.y4m");
-    REFUSES("there is no option '--speed'; --help lists them", "--speed", "9");
-    REFUSES("there is no option '--a-name-that-is-far-too-long-for-any-option'; --help lists them",
+    REFUSES("expected an option, not \"walk.y4m\"; --help lists them", "walk.y4m");
+    REFUSES("there is no option \"--speed\"; --help lists them", "--speed", "9");
+    REFUSES("there is no option \"--a-name-that-is-far-too-long-for-any-option\"; --help lists them",
             "--a-name-that-is-far-too-long-for-any-option");
     REFUSES("--list takes no value", "--list=all");
     REFUSES("--camera: needs a value", "--camera");
     REFUSES("--map: has no value", "--map=");
     REFUSES("--camera: expected auto, v4l2:DEVICE, libcamera:NUMBER, file:PATH[@RATE] or raw:LAYOUT,PATH[@RATE], not "
-            "'/dev/video0'", "--camera", "/dev/video0");
-    REFUSES("--output: expected -, serial:PORT[:BAUD], file:PATH, pty:PATH or udp:HOST:PORT, not '/dev/ttyS0'",
-            "--output", "/dev/ttyS0");
-    REFUSES("--encoding: expected nmea or cobs, not 'json'", "--encoding", "json");
-    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not '10x10+1'", "--roi", "10x10+1");
-    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not '0x10+1+1'", "--roi", "0x10+1+1");
-    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not '10x10+1+99999999999999999999'", "--roi",
+            "\"/dev/video0\"", "--camera", "/dev/video0");
+    REFUSES("--output: /dev/ttyS0 is no output: it takes serial:DEVICE:BAUD, -, file:PATH, pty:PATH or "
+            "udp:HOST:PORT", "--output", "/dev/ttyS0");
+    REFUSES("--output: udp:example.org:1 is no address and port, such as udp:192.168.4.1:5005", "--output",
+            "udp:example.org:1");
+    REFUSES("--serial: serial:/dev/ttyS0:fast has no rate of 300 to 4000000 baud after the last colon", "--serial",
+            "/dev/ttyS0:fast");
+    REFUSES("--preview: expected PORT or HOST:PORT, with a number such as 0.0.0.0 for HOST, not \"99999\"",
+            "--preview", "99999");
+    REFUSES("--rate: expected a number from 0.1 to 6553.5, not \"0x1p3\"", "--rate", "0x1p3");
+    REFUSES("--encoding: expected nmea or cobs, not \"json\"", "--encoding", "json");
+    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not \"10x10+1\"", "--roi", "10x10+1");
+    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not \"0x10+1+1\"", "--roi", "0x10+1+1");
+    REFUSES("--roi: expected WIDTHxHEIGHT+X+Y in pixels or full, not \"10x10+1+99999999999999999999\"", "--roi",
             "10x10+1+99999999999999999999");
-    REFUSES("--exposure: expected 1 to 10000000 or auto, not '0'", "--exposure", "0");
-    REFUSES("--exposure: expected 1 to 10000000 or auto, not '1e3'", "--exposure", "1e3");
-    REFUSES("--gain: expected a number from 0.01 to 655.35, not 'nan'", "--gain", "nan");
-    REFUSES("--rate: expected a number from 0.1 to 6553.5, not 'inf'", "--rate", "inf");
-    REFUSES("--size: expected WIDTHxHEIGHT in pixels, not '640'", "--size", "640");
-    REFUSES("--markers: expected a whole number from 1 to 100, not '101'", "--markers", "101");
-    REFUSES("--repeat: expected yes or no, not 'maybe'", "--repeat", "maybe");
+    REFUSES("--exposure: expected 1 to 10000000 or auto, not \"0\"", "--exposure", "0");
+    REFUSES("--exposure: expected 1 to 10000000 or auto, not \"1e3\"", "--exposure", "1e3");
+    REFUSES("--gain: expected a number from 0.01 to 655.35, not \"nan\"", "--gain", "nan");
+    REFUSES("--rate: expected a number from 0.1 to 6553.5, not \"inf\"", "--rate", "inf");
+    REFUSES("--size: expected WIDTHxHEIGHT, both 1 to 65535, not \"640\"", "--size", "640");
+    REFUSES("--markers: expected a whole number from 1 to 100, not \"101\"", "--markers", "101");
+    REFUSES("--repeat: expected yes or no, not \"maybe\"", "--repeat", "maybe");
     REFUSES("gpio-trigger needs snapshots, the directory for the frames that it saves", "--gpio-trigger", "0:1");
     REFUSES("snapshots needs gpio-trigger, the line that saves frames into it", "--snapshots", "/tmp");
 }
@@ -189,10 +196,10 @@ static void command_line_goes_before_the_file(void **state)
 static void wrong_lines_are_named(void **state)
 {
     (void)state;
-    expect_bad_config("rate = 30\n\nencoding = morse\n", ": line 3: encoding: expected nmea or cobs, not 'morse'");
+    expect_bad_config("rate = 30\n\nencoding = morse\n", ": line 3: encoding: expected nmea or cobs, not \"morse\"");
     expect_bad_config("speed = 9\n", ": line 1: speed: there is no setting of this name; --help lists them");
     expect_bad_config("config = x\n", ": line 1: config: there is no setting of this name; --help lists them");
-    expect_bad_config("rate 30\n", ": line 1: expected 'name = value', not 'rate 30'");
+    expect_bad_config("rate 30\n", ": line 1: expected \"name = value\", not \"rate 30\"");
     expect_bad_config("rate =\n", ": line 1: rate: has no value");
     expect_bad_config("rate = 30\nrate = 60\n", ": line 2: rate: was set in line 1 already");
     expect_bad_config("output = -\nserial = /dev/ttyS0\n", ": line 2: serial: was set in line 1 already");

@@ -39,7 +39,7 @@ static void broken_settings_leave_the_old_ones(void **state)
 
     write_file(path, "encoding = morse\n");
     assert_int_equal(kill(host.program, SIGHUP), 0);
-    assert_true(host_says(&host, "line 1: encoding: expected nmea or cobs, not 'morse'\n", SOON_MS));
+    assert_true(host_says(&host, "line 1: encoding: expected nmea or cobs, not \"morse\"\n", SOON_MS));
     host_forget(&host);
     expect_record(TAPEMARK_RECORD_FRAME);
 

@@ -5,13 +5,27 @@
 
 #include "tapemark.h"
 
-enum { NUMBER_BITS = 24, BLOCK_PX = 8, MODULE_PX = 4, DARK = 50, LIGHT = 190 };
+enum { NUMBER_BITS = 24, BLOCK_PX = 8, DARK = 50, LIGHT = 190 };
 
 static const uint32_t number_mask = (1u << NUMBER_BITS) - 1;
 
-int32_t picture_first_id(uint32_t number)
+picture_segment picture_tape(int32_t width_px, int32_t height_px, uint32_t number)
 {
-    return (int32_t)(number % PICTURE_KINDS) * 100;
+    /* Codes that read differently from either end, each a light CM a bit. */
+    static const unsigned codes[PICTURE_KINDS] = {0xd, 0x1, 0xc, 0x7};
+    int32_t kind = (int32_t)(number % PICTURE_KINDS);
+    picture_segment tape = {.cm_count = PICTURE_CMS, .bars = true,
+                            .left_px = (28 + 30 * kind) * width_px / 640, .top_px = height_px / 3 + 20 * kind};
+    for (int32_t i = 0; i < PICTURE_CMS; i++)
+        tape.ids[i] = (100 * kind + i + 1) * (codes[kind] >> (PICTURE_CMS - 1 - i) & 1 ? 1 : -1);
+    return tape;
+}
+
+picture_segment picture_number_tape(int32_t width_px, uint32_t number)
+{
+    int32_t kind = (int32_t)(number % PICTURE_KINDS);
+    return (picture_segment){.ids = {PICTURE_NUMBER_ID + (int32_t)(number & number_mask)}, .cm_count = 1,
+                             .left_px = width_px - 150 - 20 * kind, .top_px = 44};
 }
 
 /* A wall that gets lighter to the right, with grain in it. */
@@ -24,20 +38,21 @@ static void draw_wall(uint8_t *pixels, int32_t width_px, int32_t height_px, uint
         }
 }
 
-static void draw_tape(uint8_t *pixels, int32_t width_px, int32_t left_px, int32_t top_px, int32_t first_id)
+/* With a light margin of two modules. */
+static void draw_segment(uint8_t *pixels, int32_t width_px, const picture_segment *segment)
 {
-    int32_t ids[PICTURE_CMS];
-    uint8_t modules[TAPEMARK_HEIGHT_MODULES * 200];
-    size_t width_modules = tapemark_segment_width_modules(PICTURE_CMS, false);
-    for (int32_t i = 0; i < PICTURE_CMS; i++)
-        ids[i] = first_id + i;
-    tapemark_segment_draw(ids, PICTURE_CMS, false, modules, sizeof modules);
-    for (size_t y = 0; y < (TAPEMARK_HEIGHT_MODULES + 4) * MODULE_PX; y++)
-        for (size_t x = 0; x < (width_modules + 4) * MODULE_PX; x++) {
-            size_t column = x / MODULE_PX - 2, row = y / MODULE_PX - 2;
+    enum { MARGIN = 2, WIDTH_MAX_MODULES = 200 };
+    uint8_t modules[TAPEMARK_HEIGHT_MODULES * WIDTH_MAX_MODULES];
+    size_t width_modules = tapemark_segment_width_modules(segment->cm_count, segment->bars);
+    tapemark_segment_draw(segment->ids, segment->cm_count, segment->bars, modules, sizeof modules);
+    size_t left_px = (size_t)segment->left_px - MARGIN * PICTURE_MODULE_PX;
+    size_t top_px = (size_t)segment->top_px - MARGIN * PICTURE_MODULE_PX;
+    for (size_t y = 0; y < (TAPEMARK_HEIGHT_MODULES + 2 * MARGIN) * PICTURE_MODULE_PX; y++)
+        for (size_t x = 0; x < (width_modules + 2 * MARGIN) * PICTURE_MODULE_PX; x++) {
+            size_t column = x / PICTURE_MODULE_PX - MARGIN, row = y / PICTURE_MODULE_PX - MARGIN;
             bool printed = column < width_modules && row < TAPEMARK_HEIGHT_MODULES;
             bool dark = printed && modules[row * width_modules + column] != 0;
-            pixels[((size_t)top_px + y) * (size_t)width_px + (size_t)left_px + x] = dark ? DARK : LIGHT;
+            pixels[(top_px + y) * (size_t)width_px + left_px + x] = dark ? DARK : LIGHT;
         }
 }
 
@@ -46,13 +61,15 @@ void picture_set_number(uint8_t *pixels, int32_t width_px, uint32_t number)
     for (size_t y = 0; y < 3 * BLOCK_PX; y++)
         for (size_t x = 0; x < NUMBER_BITS * BLOCK_PX; x++)
             pixels[y * (size_t)width_px + x] = number >> (x / BLOCK_PX) & 1 ? LIGHT : DARK;
+    picture_segment in_words = picture_number_tape(width_px, number);
+    draw_segment(pixels, width_px, &in_words);
 }
 
 void picture_draw(uint8_t *pixels, int32_t width_px, int32_t height_px, uint32_t number)
 {
-    int32_t kind = (int32_t)(number % PICTURE_KINDS);
+    picture_segment tape = picture_tape(width_px, height_px, number);
     draw_wall(pixels, width_px, height_px, number % PICTURE_KINDS + 1);
-    draw_tape(pixels, width_px, 20 + 30 * kind, height_px / 3 + 20 * kind, picture_first_id(number));
+    draw_segment(pixels, width_px, &tape);
     picture_set_number(pixels, width_px, number);
 }
 

@@ -1,7 +1,7 @@
 /*
  * A USB camera without USB: a program beside the virtual machine, plugged into it by QEMU's usb-redir device, that
  * shows pictures of a tape with numbers in them. At 1920 x 1080 px it plays a loose plug: after some frames it is
- * out, and in again a little later.
+ * out, and in again a little later. SIGUSR1 pulls it out, too, and SIGUSR2 plugs it in.
  *
  *     usb_camera SOCKET      QEMU connects: -chardev socket,path=SOCKET,reconnect=1
  */
@@ -74,6 +74,13 @@ typedef struct usb_camera {
     double next_s;
     frame_layout layout;     /* that the pictures were made for */
 } usb_camera;
+
+static volatile sig_atomic_t pulled_out;
+
+static void take_signal(int signal)
+{
+    pulled_out = signal == SIGUSR1;
+}
 
 static double now_s(void)
 {
@@ -314,7 +321,10 @@ static void serve(usb_camera *camera)
     double left_s = camera->next_s - now_s();
     bool due_later = camera->device.committed && camera->waiting_count > 0;
     struct pollfd waiting = {.fd = camera->socket, .events = POLLIN};
-    poll(&waiting, 1, !due_later ? -1 : left_s > 0 ? (int)(left_s * 1000) + 1 : 0);
+    /* Not for longer than it may take to notice that it was pulled out. */
+    const int longest_ms = 100;
+    int left_ms = !due_later || left_s * 1000 > longest_ms ? longest_ms : left_s > 0 ? (int)(left_s * 1000) + 1 : 0;
+    poll(&waiting, 1, left_ms);
     if (waiting.revents != 0 && receive(camera, &header, sizeof header)) {
         if (header.length > sizeof body)
             unplug(camera);
@@ -380,11 +390,18 @@ int main(int argc, char **argv)
         return 2;
     }
     signal(SIGPIPE, SIG_IGN);
+    const struct sigaction plug = {.sa_handler = take_signal};
+    sigaction(SIGUSR1, &plug, NULL);
+    sigaction(SIGUSR2, &plug, NULL);
     int listener = listen_at(argv[1]);
     for (;;) {
-        if (camera.socket < 0)
+        if (pulled_out) {
+            unplug(&camera);
+            nanosleep(&(struct timespec){0, 20000000}, NULL);
+        } else if (camera.socket < 0) {
             plug_in(&camera, listener);
-        else
+        } else {
             serve(&camera);
+        }
     }
 }

@@ -143,7 +143,7 @@ static const field_rule *first_rule(uint8_t type)
 
 /* ---- Both encodings ----------------------------------------------------------------------------------- */
 
-enum { CRC_START = 0xffff };
+static const uint16_t crc_start = 0xffff;
 
 uint16_t tapemark_crc16(uint16_t crc, uint8_t byte)
 {
@@ -423,7 +423,7 @@ static tapemark_record_type push_to_sentence(tapemark_receiver *receiver, uint8_
         receiver->sentence.state = SENTENCE_BODY;
         receiver->sentence.length = 0;
         receiver->sentence.sum = 0;
-        receiver->sentence.crc = CRC_START;
+        receiver->sentence.crc = crc_start;
         return TAPEMARK_RECORD_NONE;
     }
 
@@ -468,7 +468,7 @@ typedef enum packet_state {
 
 static uint16_t crc16_of(const uint8_t *bytes, uint8_t count)
 {
-    uint16_t crc = CRC_START;
+    uint16_t crc = crc_start;
     while (count-- > 0)
         crc = tapemark_crc16(crc, *bytes++);
     return crc;
@@ -604,7 +604,7 @@ size_t tapemark_command_write(char *buffer, size_t size, uint16_t number, const 
 {
     sentence_writer writer = {buffer, size, 0, 0, 0};
     write_char(&writer, '$');
-    writer.crc = CRC_START;
+    writer.crc = crc_start;
     writer.sum = 0;
     for (const char *start = "PTMKQ,"; *start != '\0'; start++)
         write_char(&writer, *start);

@@ -14,8 +14,9 @@
  * TAPEMARK_RECEIVER_NO_SENTENCES or TAPEMARK_RECEIVER_NO_PACKETS, defined alike for every file that includes this
  * header.
  *
- * The byte that completes a record takes the longest: less than 0.7 ms on an ATmega328P at 16 MHz, in which eight more
- * arrive at 115200 baud. So let an interrupt collect bytes (Arduino's holds 64), and push them from the main loop.
+ * The byte that completes a record takes the longest: less than 0.7 ms on an ATmega328P at 16 MHz, in which eight
+ * more arrive at 115200 baud. So let an interrupt collect bytes (Arduino's holds 64), and push them from the main
+ * loop.
  */
 #ifndef TAPEMARK_RECEIVER_H
 #define TAPEMARK_RECEIVER_H

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 struct gpiod_chip;
 struct gpiod_chip_info;
@@ -12,6 +13,7 @@ struct gpiod_line_settings;
 struct gpiod_line_config;
 struct gpiod_request_config;
 struct gpiod_line_request;
+struct gpiod_edge_event;
 struct gpiod_edge_event_buffer;
 
 enum gpiod_line_value { GPIOD_LINE_VALUE_ERROR = -1, GPIOD_LINE_VALUE_INACTIVE = 0, GPIOD_LINE_VALUE_ACTIVE = 1 };
@@ -67,5 +69,8 @@ int gpiod_line_request_read_edge_events(struct gpiod_line_request *request, stru
 
 struct gpiod_edge_event_buffer *gpiod_edge_event_buffer_new(size_t capacity);
 void gpiod_edge_event_buffer_free(struct gpiod_edge_event_buffer *buffer);
+struct gpiod_edge_event *gpiod_edge_event_buffer_get_event(struct gpiod_edge_event_buffer *buffer,
+                                                           unsigned long index);
+uint64_t gpiod_edge_event_get_timestamp_ns(struct gpiod_edge_event *event);
 
 #endif

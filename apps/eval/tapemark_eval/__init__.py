@@ -1,0 +1,1 @@
+"""Measures Tapemark and other marker systems on rendered scenes."""

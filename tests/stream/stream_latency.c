@@ -1,0 +1,266 @@
+/*
+ * Usage: stream_latency PROGRAM RECORDING [FRAMES [BOUND_MS]]
+ * Plays a recording to tapemark-stream at 30 frames a second, through each way out, and tells how long frames take
+ * from their capture to the first and to the last byte on the wire. A serial port is a terminal whose other end is
+ * drained at the line's rate. FRAMES (600 unless told) are measured of each way.
+ *
+ * "Without" is the time to the last byte less what the wire takes for the frame's bytes and less what decoding that
+ * very picture takes, which is measured beforehand, at rest: all that the machine's other work adds stays in it.
+ *
+ * With BOUND_MS, it fails when half of the frames take longer than that without wire and decoding, or to the last
+ * byte longer than a frame time (where the wire itself does not); or when an age that was told is not so.
+ */
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "camera.h"
+#include "gray.h"
+#include "stream_host.h"
+#include "tapemark.h"
+#include "timed_line.h"
+
+enum { SOON_MS = 10000, RATE_HZ = 30, WARM_UP_FRAMES = 30, FRAMES_MAX = 100000, PICTURES_MAX = 4096 };
+
+static const double ns_per_ms = 1e6;
+
+/* ---- What decoding takes ------------------------------------------------------------------------------------- */
+
+typedef struct pictures {
+    int64_t decode_ns[PICTURES_MAX];
+    size_t count;
+} pictures;
+
+static int compare(const void *left, const void *right)
+{
+    const int64_t *a = left, *b = right;
+    return (*a > *b) - (*a < *b);
+}
+
+static int64_t decode_time_ns(const gray_view *view)
+{
+    enum { TIMES = 7 };
+    static uint8_t workspace[TAPEMARK_WORKSPACE_BYTES(4096, 4096)];
+    static tapemark_cm cms[256];
+    static tapemark_tm tms[64];
+    int64_t taken_ns[TIMES];
+    const tapemark_image image = {view->pixels, view->width_px, view->height_px, view->stride_bytes};
+    for (int i = 0; i < TIMES; i++) {
+        tapemark_result result = {.cms = cms, .cm_capacity = 256, .tms = tms, .tm_capacity = 64};
+        const int64_t begin_ns = host_clock_ns();
+        tapemark_decode(&image, NULL, workspace, sizeof workspace, &result);
+        taken_ns[i] = host_clock_ns() - begin_ns;
+    }
+    qsort(taken_ns, TIMES, sizeof *taken_ns, compare);
+    return taken_ns[TIMES / 2];
+}
+
+static bool measure_decoding(const char *recording, pictures *all)
+{
+    char name[512];
+    error_text reason;
+    camera_frame got;
+    gray_converter converter = {0};
+    gray_view view;
+    const camera_wishes wishes = {0};
+    snprintf(name, sizeof name, "file:%s@max", recording);
+    camera *device = camera_open(name, &reason);
+    bool good = device != NULL && camera_configure(device, &wishes, &reason);
+    while (good && all->count < PICTURES_MAX && camera_next(device, SOON_MS, &got, &reason) == CAMERA_FRAME) {
+        good = gray_from_frame(&converter, &got.image, &view, &reason);
+        if (good)
+            all->decode_ns[all->count++] = decode_time_ns(&view);
+    }
+    if (!good || all->count == 0)
+        fprintf(stderr, "stream_latency: %s: %s\n", recording, good ? "holds no frames" : reason.text);
+    gray_converter_release(&converter);
+    camera_close(device);
+    return good && all->count > 0;
+}
+
+/* ---- The ways out -------------------------------------------------------------------------------------------- */
+
+typedef struct way {
+    const char *title, *encoding;
+    char output[64];    /* LINE is the terminal */
+    unsigned baud;      /* 0: no serial line */
+    int end;            /* ours, where it is no terminal; -1 */
+} way;
+
+static bool open_udp(way *out)
+{
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_addr = {htonl(INADDR_LOOPBACK)}};
+    socklen_t size = sizeof address;
+    out->end = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (out->end < 0 || bind(out->end, (const struct sockaddr *)&address, size) != 0 ||
+        getsockname(out->end, (struct sockaddr *)&address, &size) != 0)
+        return false;
+    snprintf(out->output, sizeof out->output, "udp:127.0.0.1:%u", ntohs(address.sin_port));
+    return true;
+}
+
+static bool open_pipe(way *out, stream_host *host)
+{
+    int ends[2];
+    if (pipe(ends) != 0)
+        return false;
+    out->end = ends[0];
+    host->output = ends[1];
+    return true;
+}
+
+static bool open_way(way *out, stream_host *host)
+{
+    out->end = -1;
+    if (out->baud > 0) {
+        snprintf(out->output, sizeof out->output, "serial:LINE:%u", out->baud);
+        return true;
+    }
+    if (strcmp(out->title, "udp") == 0)
+        return open_udp(out);
+    snprintf(out->output, sizeof out->output, "-");
+    return open_pipe(out, host);
+}
+
+/* ---- Measuring ----------------------------------------------------------------------------------------------- */
+
+typedef struct measured {
+    int64_t first_ns[FRAMES_MAX], last_ns[FRAMES_MAX], without_ns[FRAMES_MAX];
+    size_t count;
+    int64_t wire_most_ns;
+    int64_t age_error_most_ns;
+    unsigned dropped;
+} measured;
+
+static void add(measured *all, const timed_frame *got, const pictures *known, int64_t byte_ns)
+{
+    const int64_t wire_ns = (int64_t)got->bytes * byte_ns;
+    const int64_t decode_ns = known->decode_ns[(size_t)(got->head.seq - 1) % known->count];
+    const int64_t first_ns = got->first_ns - got->capture_ns, last_ns = got->last_ns - got->capture_ns;
+    const int64_t age_error_ns = llabs(first_ns - (int64_t)got->head.age_10us * 10000);
+    all->first_ns[all->count] = first_ns;
+    all->last_ns[all->count] = last_ns;
+    all->without_ns[all->count++] = last_ns - wire_ns - decode_ns;
+    all->dropped += got->head.dropped;
+    if (wire_ns > all->wire_most_ns)
+        all->wire_most_ns = wire_ns;
+    if (age_error_ns > all->age_error_most_ns)
+        all->age_error_most_ns = age_error_ns;
+}
+
+static bool measure(way *out, const char *program, const char *recording, size_t frames, const pictures *known,
+                    measured *all)
+{
+    char camera_name[512];
+    stream_host host;
+    timed_frame got;
+    snprintf(camera_name, sizeof camera_name, "file:%s@%d", recording, RATE_HZ);
+    if (!host_open(&host) || !open_way(out, &host))
+        return false;
+    const char *const arguments[] = {"--camera", camera_name, "--repeat", "yes", "--output", out->output,
+                                     "--encoding", out->encoding, NULL};
+    bool good = host_start(&host, program, arguments);
+    timed_line line = timed_line_of(out->end >= 0 ? out->end : host.line, out->baud);
+    *all = (measured){0};
+    for (size_t i = 0; good && i < frames + WARM_UP_FRAMES; i++) {
+        good = timed_line_frame(&line, SOON_MS, &got);
+        if (good && i >= WARM_UP_FRAMES)
+            add(all, &got, known, line.byte_ns);
+    }
+    if (!good)
+        fprintf(stderr, "stream_latency: no frames through %s; %s\n", out->title, host.said);
+    host_close(&host);
+    if (out->end >= 0)
+        close(out->end);
+    if (host.output > 0)
+        close(host.output);
+    return good;
+}
+
+/* ---- Telling ------------------------------------------------------------------------------------------------- */
+
+/* Sorts them. */
+static double percentile_ms(int64_t *times_ns, size_t count, unsigned percent)
+{
+    qsort(times_ns, count, sizeof *times_ns, compare);
+    const size_t rank = (count * percent + 99) / 100;
+    return (double)times_ns[rank > 0 ? rank - 1 : 0] / ns_per_ms;
+}
+
+static void tell_decoding(const pictures *known, size_t frames)
+{
+    static pictures sorted;
+    sorted = *known;
+    printf("%zu frames of each way; decoding alone, in ms: p50 %.2f, p99 %.2f, max %.2f\n\n", frames,
+           percentile_ms(sorted.decode_ns, sorted.count, 50), percentile_ms(sorted.decode_ns, sorted.count, 99),
+           percentile_ms(sorted.decode_ns, sorted.count, 100));
+}
+
+static void tell_times(int64_t *times_ns, size_t count)
+{
+    printf(" %.2f | %.2f | %.2f |", percentile_ms(times_ns, count, 50), percentile_ms(times_ns, count, 99),
+           percentile_ms(times_ns, count, 100));
+}
+
+static void tell(const way *out, measured *all)
+{
+    printf("| %s | %s |", out->title, out->encoding);
+    tell_times(all->first_ns, all->count);
+    tell_times(all->last_ns, all->count);
+    tell_times(all->without_ns, all->count);
+    printf(" %.2f |\n", (double)all->wire_most_ns / ns_per_ms);
+    fflush(stdout);
+}
+
+static bool keeps_bounds(const way *out, measured *all, double bound_ms)
+{
+    const double frame_ms = 1000.0 / RATE_HZ;
+    const double without_ms = percentile_ms(all->without_ns, all->count, 50);
+    const double last_ms = percentile_ms(all->last_ns, all->count, 50);
+    const bool in_time = last_ms < frame_ms || (double)all->wire_most_ns / ns_per_ms > frame_ms / 2;
+    const bool honest = (double)all->age_error_most_ns / ns_per_ms < frame_ms;
+    if (without_ms > bound_ms || !in_time || !honest)
+        fprintf(stderr, "stream_latency: %s, %s: %.2f ms without wire and decoding, %.2f ms to the last byte, ages "
+                "wrong by up to %.2f ms\n", out->title, out->encoding, without_ms, last_ms,
+                (double)all->age_error_most_ns / ns_per_ms);
+    return without_ms <= bound_ms && in_time && honest;
+}
+
+int main(int argc, char *argv[])
+{
+    static way ways[] = {{.title = "115200 baud", .encoding = "nmea", .baud = 115200},
+                         {.title = "115200 baud", .encoding = "cobs", .baud = 115200},
+                         {.title = "921600 baud", .encoding = "nmea", .baud = 921600},
+                         {.title = "921600 baud", .encoding = "cobs", .baud = 921600},
+                         {.title = "udp", .encoding = "cobs"},
+                         {.title = "standard output", .encoding = "cobs"}};
+    static measured all;
+    static pictures known;
+    const size_t frames = argc > 3 ? strtoul(argv[3], NULL, 10) : 600;
+    const double bound_ms = argc > 4 ? strtod(argv[4], NULL) : 0;
+    bool good = argc >= 3 && frames > 0 && frames <= FRAMES_MAX;
+    if (!good) {
+        fprintf(stderr, "usage: stream_latency PROGRAM RECORDING [FRAMES [BOUND_MS]]\n");
+        return 2;
+    }
+    /* Our own waking up is not what is to be measured. */
+    prctl(PR_SET_TIMERSLACK, 1);
+    if (!measure_decoding(argv[2], &known))
+        return 1;
+    tell_decoding(&known, frames);
+    printf("| way out | encoding | first byte, p50 | p99 | max | last byte, p50 | p99 | max | without, p50 | p99 | max "
+           "| wire, most |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+    for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+        if (!measure(&ways[i], argv[1], argv[2], frames, &known, &all))
+            return 1;
+        tell(&ways[i], &all);
+        good = (bound_ms <= 0 || keeps_bounds(&ways[i], &all, bound_ms)) && good;
+    }
+    return good ? 0 : 1;
+}
