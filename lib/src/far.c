@@ -22,7 +22,7 @@ static const float rings_px = 0.66f, unresolved_min = 0.93f;
 static const float blocks_px = 0.55f;
 
 /* Modules that words need to be told from each other, whatever they show, px. */
-static const float words_px = 0.85f;
+static const float words_px = 0.95f;
 
 /* How much clearer one way up must be than the other. */
 static const float turn_min = 0.15f;

@@ -4,6 +4,7 @@
 #include "judgement.h"
 #include "real.h"
 #include "report.h"
+#include "sequence.h"
 
 /* ---- Reading the CMs --------------------------------------------------------------------------------------- */
 
@@ -137,7 +138,8 @@ static void read_part(const tmi_reader *reader, tmi_segment *segment, int first,
         tmi_looks_like_tape(segment, first, count)) {
         read_again(reader, segment, first, count, reasons);
         evidence = tmi_turn_evidence(segment, first, count);
-        tmi_judge(reader, segment, first, count, evidence, reasons);
+        if (tmi_judge(reader, segment, first, count, evidence, reasons) < count && real_abs(evidence) >= tmi_turn_min)
+            tmi_sequence_read(reader, segment, first, count, evidence < 0, reasons);
     }
     const bool turned = evidence < 0, turn_is_clear = real_abs(evidence) >= tmi_turn_min;
     int tm = TMI_NONE;

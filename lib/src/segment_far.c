@@ -2,6 +2,7 @@
 #include "judgement.h"
 #include "real.h"
 #include "report.h"
+#include "sequence.h"
 
 static tapemark_point middle_of(const tapemark_point corners[4])
 {
@@ -82,7 +83,8 @@ void tmi_segment_read_far(const tmi_reader *reader, tmi_segment *segment, int cm
     reader->result->stats.segments++;
     read_cms(reader, segment, cm_count, resolved);
     float evidence = tmi_turn_evidence(segment, 0, cm_count);
-    tmi_judge(reader, segment, 0, cm_count, evidence, reasons);
+    if (tmi_judge(reader, segment, 0, cm_count, evidence, reasons) < cm_count && real_abs(evidence) >= tmi_turn_min)
+        tmi_sequence_read(reader, segment, 0, cm_count, evidence < 0, reasons);
     if (real_abs(evidence) < tmi_turn_min)
         evidence = turn != 0 ? turn : tmi_turn_hint(reader, segment, 0, cm_count);
     const bool turned = evidence < 0;

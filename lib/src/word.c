@@ -12,9 +12,6 @@ enum {
     CANDIDATE_WORDS = 32  /* of those words, how many get their checksum compared */
 };
 
-/* What preparing a match and scoring a word cost, in pixel reads (of some 50 instructions). */
-enum { PREPARE_WORK = 400, SCORE_WORK = 70 };
-
 /* Data cells at which less than about a fifth of a one is to be seen are no candidates: those whose change, cost
  * included, would gain less than this part of a one's energy. */
 static const float hopeless_gain = -0.9f;
@@ -55,6 +52,13 @@ static float score_word(const tmi_evidence *e, const candidate *word)
         if ((checksum >> (TMI_CHECKSUM_BITS - 1 - bit) & 1) != negative)
             changed[count++] = (uint8_t)(TAPEMARK_DATA_BITS + bit);
     return tmi_evidence_correlate(e, changed, count);
+}
+
+float tmi_word_score(const tmi_evidence *e, int32_t rank)
+{
+    candidate word = {0};
+    word.count = (uint8_t)tmi_positions_of_id(rank, word.positions);
+    return score_word(e, &word);
 }
 
 /* ---- Candidates -------------------------------------------------------------------------------------- */
@@ -230,7 +234,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     shortlist list;
     tmi_evidence_gather(&e, cells);
     list_words(&e, &list, work);
-    *work += PREPARE_WORK;
+    *work += TMI_GATHER_WORK;
     contest c;
     begin_contest(&c, &e);
     float scores[CANDIDATE_WORDS];
@@ -242,7 +246,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         if (id == TMI_NO_ID || !in_reach(&c, word))
             continue;
         scores[count] = score_word(&e, word);
-        *work += SCORE_WORK;
+        *work += TMI_SCORE_WORK;
         c.best = real_max(c.best, scores[count]);
         ids[count++] = id;
     }
@@ -259,4 +263,45 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         reading->odds = 1 + 0.15f * (reading->odds - 1);
     if (reading->id != TMI_NO_ID)
         count_cells(cells, reading);
+}
+
+/* ---- Words that others tell of --------------------------------------------------------------------------- */
+
+int32_t tmi_word_of_few_ones(const tmi_cells *cells, uint32_t *work)
+{
+    tmi_evidence e;
+    uint8_t picked[CANDIDATE_CELLS];
+    float gains[CANDIDATE_CELLS];
+    tmi_evidence_gather(&e, cells);
+    const int count = pick_positions(&e, picked, gains);
+    float best = -1;
+    int32_t rank = 0;
+    for (int i = -1; i < count; i++)
+        for (int j = -1; j < i || i + j == -2; j++) {
+            candidate word = {0};
+            if (i >= 0)
+                word.positions[word.count++] = picked[i];
+            if (j >= 0)
+                word.positions[word.count++] = picked[j];
+            const float score = word.count == 0 && e.sign < 0 ? -1 : score_word(&e, &word);
+            *work += TMI_SCORE_WORK;
+            if (score > best) {
+                best = score;
+                rank = tmi_id_of_positions(word.positions, word.count, false);
+            }
+        }
+    return rank;
+}
+
+void tmi_word_read_as(const tmi_cells *cells, const tmi_words *words, int32_t rank, tmi_reading *reading)
+{
+    tmi_evidence e;
+    tmi_evidence_gather(&e, cells);
+    *reading = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
+    if (rank < 0 || rank > TAPEMARK_MAX_ID || (rank == 0 && e.sign < 0))
+        return;
+    reading->id = e.sign < 0 ? -rank : rank;
+    reading->score = tmi_word_score(&e, rank);
+    reading->unknown = !is_known(words, reading->id);
+    count_cells(cells, reading);
 }

@@ -165,7 +165,7 @@ static void reads_cms_from_one_pixel_a_module(void **state)
     static const struct {
         double px;
         int least; /* of 72 */
-    } limits[] = {{1.1, 68}, {1, 62}, {0.9, 36}};
+    } limits[] = {{1.1, 70}, {1, 68}, {0.96, 60}};
     for (size_t i = 0; i < COUNT_OF(limits); i++) {
         sweep s = plain;
         s.px_per_module = limits[i].px;
