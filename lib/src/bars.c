@@ -37,6 +37,10 @@ static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
     return quiet < 0.4f ? 1 - 3 * real_abs(gray - 0.55f) : 0;
 }
 
+/* By this part of what bars are darker than their gaps, the second module behind them is darker than the first where
+ * there is a fifth bar. */
+static const float fifth_bar = 0.5f;
+
 static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)
 {
     float value[BAR_SAMPLES], sum = 0, squares = 0, dark = 0;
@@ -53,6 +57,9 @@ static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stre
     const float n = BAR_SAMPLES, darks = 4;
     const float variance = squares - sum * sum / n;
     const float difference = (sum - dark) / (n - darks) - dark / darks;
+    /* Behind the fourth bar there is paper: what goes on is a grating. */
+    if (value[BAR_SAMPLES - 2] - value[BAR_SAMPLES - 1] > fifth_bar * difference)
+        return 0;
     const float sharp = variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
     return is_unresolved(place) ? real_max(sharp, gray_bars(value, place.finder)) : sharp;
 }

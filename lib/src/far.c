@@ -288,6 +288,9 @@ static const float guess_heights = 9;
 /* Samples that are enough to see whether there is anything but a line, and to guess from; in heights. */
 static const float glance_step = 0.35f, guess_step = 0.1f;
 
+/* What explains no more of the wave than this one way up does not fit the other way up either. */
+static const float hopeless = 0.65f;
+
 /* The guess that fits best of those made from where the strokes are; false where none is any good. */
 static bool guess_row(const tmi_reader *reader, tmi_far *far, const tmi_stripe *stripe, tmi_row *row)
 {
@@ -296,17 +299,23 @@ static bool guess_row(const tmi_reader *reader, tmi_far *far, const tmi_stripe *
     const float height = stripe->height;
     const float reach = real_min(stripe->half_length + 0.8f * height, guess_heights * height);
     tmi_wave_sample(reader->view, stripe, reach, glance_step * height, &far->wave, work);
-    if (tmi_wave_is_flat(&far->wave))
+    const tmi_glance glance = tmi_wave_glance(&far->wave);
+    if (glance.flat)
         return false;
     tmi_wave_sample(reader->view, stripe, reach, real_max(0.5f, guess_step * height), &far->wave, work);
-    tmi_wave_guess_rows(&far->wave, &far->sums, guesses, work);
+    tmi_wave_guess_rows(&far->wave, glance.roughness, &far->sums, guesses, work);
     row->explained = 0;
-    for (int i = 0; i < 2 * TMI_GUESSES; i++) {
-        const tmi_guess *guess = &guesses[i / 2];
-        tmi_row tried = {
-            .origin = guess->origin, .module = guess->module, .cm_count = guess->cm_count, .turned = i % 2};
-        if (guess->gain > 0 && tmi_wave_fit_guess(&far->wave, &tried, work) && tried.explained > row->explained)
-            *row = tried;
+    for (int i = 0; i < TMI_GUESSES; i++) {
+        const tmi_guess *guess = &guesses[i];
+        for (int turned = 0; turned < 2 && guess->gain > 0; turned++) {
+            tmi_row tried = {
+                .origin = guess->origin, .module = guess->module, .cm_count = guess->cm_count, .turned = turned};
+            const bool fits = tmi_wave_fit_guess(&far->wave, &tried, work);
+            if (fits && tried.explained > row->explained)
+                *row = tried;
+            if (!fits && tried.explained < hopeless)
+                break;
+        }
     }
     return row->explained > 0;
 }

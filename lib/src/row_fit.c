@@ -131,7 +131,7 @@ static void find_code(const tmi_wave *wave, tmi_row *row)
 
 /* What fits no better than this after that many steps will not come to fit. */
 enum { FIT_STEPS = 4 };
-static const float explained_min[FIT_STEPS] = {0.35f, 0.5f, 0.6f, 0.7f};
+static const float explained_min[FIT_STEPS] = {0.6f, 0.68f, 0.74f, 0.78f};
 
 static bool fit_row(const tmi_wave *wave, tmi_row *row, int steps, uint32_t *work)
 {

@@ -198,9 +198,9 @@ static const float nearly_part = 0.3f;
 static tapemark_reject read_as(const sequence *s, const guess *g, int cm, float odds, tapemark_reject reason)
 {
     tmi_reading *reading = &s->segment->readings[s->turned][cm];
-    const int32_t rank = rank_in(s, g, cm), own_rank = reading->id < 0 ? -reading->id : reading->id;
+    const int32_t rank = rank_in(s, g, cm);
     tmi_cells cells;
-    if ((reason == TMI_BELIEVED && rank == own_rank) || !sample(s, cm, &cells))
+    if (!sample(s, cm, &cells) || (reason == TMI_BELIEVED && (reading->id == rank || reading->id == -rank)))
         return reason;
     tmi_reading as;
     tmi_word_read_as(&cells, &s->reader->words, rank, &as);

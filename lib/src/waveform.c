@@ -97,7 +97,7 @@ static float coarse_gain(const tmi_wave_sums *s, float origin, float pitch, int 
 }
 
 /* Part of the wave's variance that a first look has to explain. */
-static const float coarse_min = 0.35f;
+static const float coarse_min = 0.37f;
 
 /* Over five pitches, half a step makes a module at the ends. */
 static const float pitch_step = 0.95f;
@@ -108,7 +108,6 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
 {
     const float unit = wave->step * (float)s->per_sum;
     uint32_t tried = 0;
-    *guess = (tmi_guess){0};
     for (float pitch = most; pitch > least; pitch *= pitch_step) {
         const float hop = real_max(0.5f, pitch * (1.25f / PITCH));
         for (float origin = 0; origin < pitch; origin += hop) {
@@ -132,24 +131,36 @@ static const float pitch_bounds[TMI_GUESSES + 1] = {1.15f, 0.85f, 0.63f, 0.47f};
 
 /* The wave along a tape rises and falls by more than this part of its strokes' contrast; along a lone line, a gap
  * between boards or a shadow's edge it does not. Standard deviation. */
-static const float swing_min = 0.15f;
+static const float swing_min = 0.25f;
 
-bool tmi_wave_is_flat(const tmi_wave *wave)
+tmi_glance tmi_wave_glance(const tmi_wave *wave)
 {
-    float sum = 0, squares = 0;
+    float sum = 0, squares = 0, changes = 0, before = 0;
     for (int i = 0; i < wave->count; i++) {
         const float value = (float)(wave->value[i] - wave->value[0]) * (1.0f / 64);
         sum += value;
         squares += value * value;
+        changes += (value - before) * (value - before);
+        before = value;
     }
     const float n = (float)wave->count, swing = swing_min * wave->stripe.contrast;
-    return squares - sum * sum / n < swing * swing * n;
+    const float variance = squares - sum * sum / n;
+    return (tmi_glance){variance<swing * swing * n, variance> 0 ? changes / variance : 0};
 }
 
-void tmi_wave_guess_rows(const tmi_wave *wave, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES], uint32_t *work)
+/* From one sample of the glance to the next, letters change more than blocks do that are as long as that: no pitch is
+ * tried that is too long for how rough the wave is. A row of pitch p, in glances, has a roughness of 10 / p at most.
+ */
+static const float roughness_max[TMI_GUESSES] = {1.5f, 1.9f, 2.6f};
+
+void tmi_wave_guess_rows(const tmi_wave *wave, float roughness, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES],
+                         uint32_t *work)
 {
     sum_up(wave, sums);
     const float full = wave->stripe.height * ((float)PITCH / HEIGHT) / (wave->step * (float)sums->per_sum);
-    for (int i = 0; i < TMI_GUESSES; i++)
-        best_pitch(wave, sums, full * pitch_bounds[i + 1], full * pitch_bounds[i], &guesses[i], work);
+    for (int i = 0; i < TMI_GUESSES; i++) {
+        guesses[i] = (tmi_guess){0};
+        if (roughness < roughness_max[i])
+            best_pitch(wave, sums, full * pitch_bounds[i + 1], full * pitch_bounds[i], &guesses[i], work);
+    }
 }

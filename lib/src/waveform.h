@@ -77,11 +77,16 @@ typedef struct tmi_guess {
 
 enum { TMI_GUESSES = 3 };
 
-/* Whether it rises and falls too little for a tape. */
-bool tmi_wave_is_flat(const tmi_wave *wave);
+/* A first look at a wave sampled in steps of about a third of the height. */
+typedef struct tmi_glance {
+    bool flat;       /* it rises and falls too little for a tape */
+    float roughness; /* mean square of the change from one sample to the next, in variances */
+} tmi_glance;
+tmi_glance tmi_wave_glance(const tmi_wave *wave);
 
 /* Guesses, one for each range of modules, from a wave of about five pitches. */
-void tmi_wave_guess_rows(const tmi_wave *wave, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES], uint32_t *work);
+void tmi_wave_guess_rows(const tmi_wave *wave, float roughness, tmi_wave_sums *sums, tmi_guess guesses[TMI_GUESSES],
+                         uint32_t *work);
 
 /* Fits such a guess to the same wave; false where it does not come to fit. */
 bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work);
