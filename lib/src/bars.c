@@ -37,10 +37,6 @@ static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
     return quiet < 0.4f ? 1 - 3 * real_abs(gray - 0.55f) : 0;
 }
 
-/* By this part of what bars are darker than their gaps, the second module behind them is darker than the first where
- * there is a fifth bar. */
-static const float fifth_bar = 0.5f;
-
 static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)
 {
     float value[BAR_SAMPLES], sum = 0, squares = 0, dark = 0;
@@ -57,11 +53,23 @@ static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stre
     const float n = BAR_SAMPLES, darks = 4;
     const float variance = squares - sum * sum / n;
     const float difference = (sum - dark) / (n - darks) - dark / darks;
-    /* Behind the fourth bar there is paper: what goes on is a grating. */
-    if (value[BAR_SAMPLES - 2] - value[BAR_SAMPLES - 1] > fifth_bar * difference)
-        return 0;
     const float sharp = variance > 1 ? difference * real_sqrt(darks * (n - darks) / (n * variance)) : 0;
     return is_unresolved(place) ? real_max(sharp, gray_bars(value, place.finder)) : sharp;
+}
+
+/* Whether there is a fifth bar, half as much darker than the gap before it as the fourth one or more: behind the
+ * fourth there is paper, and what goes on is a grating. */
+static bool goes_on(const tmi_view *view, tmi_bars_place place, float stretch, uint32_t *reads)
+{
+    float value[4] = {0}; /* the last gap, the fourth bar, paper or a gap, paper or a fifth bar */
+    for (int i = 0; i < TMI_LINES; i += 2)
+        for (int k = 0; k < 4; k++) {
+            const float reach = stretch * (float)(BAR_FIRST + BAR_SAMPLES - 4 + k);
+            const tmi_point at = tmi_project(place.map, place.u + place.direction * reach, tmi_line_v[i]);
+            value[k] += tmi_sample(view, at.x, at.y);
+        }
+    *reads += 4 * (TMI_LINES / 2 + 1);
+    return value[2] - value[3] > 0.5f * real_max(0, value[0] - value[1]);
 }
 
 /* Bars lie beyond what the homography was measured on, and perspective goes on: the best of a few scales. */
@@ -79,6 +87,9 @@ static float best_stretch(const tmi_view *view, tmi_bars_place place, float *sco
             best = stretches[s];
         }
     }
+    /* A fifth bar that lies where light is looked for makes the bars seem further apart than they are. */
+    if (*score > 0 && (goes_on(view, place, best, reads) || goes_on(view, place, 0.96f * best, reads)))
+        *score = 0;
     return best;
 }
 
