@@ -58,7 +58,10 @@ static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stre
 }
 
 /* Whether there is a fifth bar, half as much darker than the gap before it as the fourth one or more: behind the
- * fourth there is paper, and what goes on is a grating. */
+ * fourth there is paper, and what goes on is a grating. A wall behind the paper that is blurred into it, a module
+ * away, takes less than a third of the light. */
+static const float wall_max = 0.35f;
+
 static bool goes_on(const tmi_view *view, tmi_bars_place place, float stretch, uint32_t *reads)
 {
     float value[4] = {0}; /* the last gap, the fourth bar, paper or a gap, paper or a fifth bar */
@@ -69,7 +72,8 @@ static bool goes_on(const tmi_view *view, tmi_bars_place place, float stretch, u
             value[k] += tmi_sample(view, at.x, at.y);
         }
     *reads += 4 * (TMI_LINES / 2 + 1);
-    return value[2] - value[3] > 0.5f * real_max(0, value[0] - value[1]);
+    const float depth = (float)(TMI_LINES / 2 + 1) * (place.finder->light - place.finder->dark);
+    return value[2] - value[3] > real_max(wall_max * depth, 0.5f * (value[0] - value[1]));
 }
 
 /* Bars lie beyond what the homography was measured on, and perspective goes on: the best of a few scales. */

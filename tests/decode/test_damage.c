@@ -113,7 +113,7 @@ static void reads_ascending_ids_with_cells_flipped(void **state)
 static void another_word_by_damage_is_not_believed(void **state)
 {
     (void)state;
-    read_damaged((damage){.cells = 2}, 64);
+    read_damaged((damage){.cells = 2}, 48);
 }
 
 /* A tape that repeats an id in its middle, as one pieced together does: no id of one half in the other. */
