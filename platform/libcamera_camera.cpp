@@ -227,7 +227,8 @@ bool libcamera_camera::is_gone_for_sure()
     std::unique_lock<std::mutex> lock(guard_);
     const int64_t last_sign_ns = last_sign_ns_;
     if (camera_clock_ns() - last_sign_ns > silence_ns)
-        changed_.wait_for(lock, time_to_hear, [this, last_sign_ns] { return gone_ || last_sign_ns_ != last_sign_ns; });
+        changed_.wait_for(lock, time_to_hear,
+                          [this, last_sign_ns] { return gone_ || last_sign_ns_ != last_sign_ns; });
     return gone_;
 }
 

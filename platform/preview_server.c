@@ -129,10 +129,12 @@ static size_t make_jpeg(preview_server *server)
     for (size_t i = 0; i < pixels; i++)
         memset(server->bgr + 3 * i, picture->gray[i], 3);
     if (server->paint != NULL) {
-        preview_canvas canvas = {server->bgr, picture->width_px, picture->height_px, 3 * (ptrdiff_t)picture->width_px};
+        preview_canvas canvas = {server->bgr, picture->width_px, picture->height_px,
+                                 3 * (ptrdiff_t)picture->width_px};
         server->paint(server->context, &canvas, picture->notes);
     }
-    return opencv_encode_jpeg(server->bgr, picture->width_px, picture->height_px, &server->jpeg, &server->jpeg_capacity);
+    return opencv_encode_jpeg(server->bgr, picture->width_px, picture->height_px, &server->jpeg,
+                              &server->jpeg_capacity);
 }
 
 static void hand_out(preview_server *server)

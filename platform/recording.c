@@ -13,7 +13,8 @@
 /* Memory cards pause for a second now and then: what comes meanwhile has room, up to this. */
 enum { WAITING_MIN = 2, WAITING_MAX = 64, WAITING_BYTES = 32 << 20 };
 
-static const int64_t patience_ns = 1000000000;
+/* At the end: for all that waits, then for the frame that is being written. */
+static const int64_t patience_ns = 3 * INT64_C(1000000000), last_patience_ns = 1000000000;
 
 struct recording {
     frame_layout layout;      /* of all frames; a width of 0 before the first */
@@ -252,24 +253,24 @@ uint64_t recording_left_out(recording *file)
 }
 
 /* With the mutex held. */
-static bool wait_until_finished(recording *file)
+static bool wait_until_finished(recording *file, int64_t time_ns)
 {
-    int64_t deadline_ns = camera_clock_ns() + patience_ns;
+    int64_t deadline_ns = camera_clock_ns() + time_ns;
     struct timespec deadline = {(time_t)(deadline_ns / 1000000000), (long)(deadline_ns % 1000000000)};
     while (!file->finished && pthread_cond_timedwait(&file->changed, &file->mutex, &deadline) == 0)
         continue;
     return file->finished;
 }
 
-/* With the mutex held: first for all that waits, then for the frame that is being written. */
+/* With the mutex held. */
 static bool let_finish(recording *file)
 {
     file->closing = true;
     pthread_cond_signal(&file->changed);
-    if (wait_until_finished(file))
+    if (wait_until_finished(file, patience_ns))
         return true;
     atomic_store(&file->given_up, true);
-    return wait_until_finished(file);
+    return wait_until_finished(file, last_patience_ns);
 }
 
 bool recording_close(recording *file, error_text *error)

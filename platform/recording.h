@@ -31,7 +31,7 @@ bool recording_add(recording *file, const camera_frame *input, error_text *error
 /* Frames that were given and are not recorded, because the disk was too slow. */
 uint64_t recording_left_out(recording *file);
 
-/* Writes what waits, for two seconds at most. NULL is fine. False, with an error, when frames are missing or did not
+/* Writes what waits, for four seconds at most. NULL is fine. False, with an error, when frames are missing or did not
  * reach the disk, unless recording_add() has told so. */
 bool recording_close(recording *file, error_text *error);
 

@@ -87,8 +87,8 @@ static void release(recording_files *files)
     free(files);
 }
 
-/* The next two return 0, or what errno was. What a former recording left is thrown away only when both can be written,
- * and nobody plays it or records to it: who does holds a lock. */
+/* The next two return 0, or what errno was. What a former recording left is thrown away only when both can be
+ * written, and nobody plays it or records to it: who does holds a lock. */
 static int open_times(recording_files *files, const char *times_path)
 {
     bool ignored;
@@ -200,7 +200,8 @@ static bool begin(recording_files *files, const frame_layout *layout, error_text
 }
 
 /* Points to the bytes of a frame as the recording has them. */
-static bool prepare(recording_files *files, const frame *input, const uint8_t **bytes, size_t *size, error_text *error)
+static bool prepare(recording_files *files, const frame *input, const uint8_t **bytes, size_t *size,
+                    error_text *error)
 {
     gray_view view;
     if (!files->y4m) {

@@ -1,6 +1,6 @@
 /*
- * A camera in a thread of its own. Opening it, waiting for its frames, reading a recording's next one from a slow disk
- * or a pipe, closing it: whatever of that takes long, or never ends, the program goes on meanwhile.
+ * A camera in a thread of its own. Opening it, waiting for its frames, reading a recording's next one from a slow
+ * disk or a pipe, closing it: whatever of that takes long, or never ends, the program goes on meanwhile.
  *
  * One frame at a time is out. While it is, the thread waits, and then takes the newest one that there is.
  */

@@ -93,6 +93,7 @@ void camera_watch_begin(camera_watch *watch, const stream_settings *settings)
     camera_watch fresh = {.leaving = watch->leaving, .give_up_ns = now_ns + close_patience_ns,
                           .left_behind = watch->left_behind, .state = CAMERA_WATCH_RUNNING, .retry_ns = now_ns,
                           .pause_ns = first_pause_ns, .last_frame_ns = now_ns, .seq = watch->seq,
+                          .sequence = watch->sequence,
                           .failures = watch->failures, .repeat = settings->repeat};
     memcpy(fresh.name, settings->camera, sizeof fresh.name);
     fresh.recorded = strncmp(fresh.name, "file:", 5) == 0 || strncmp(fresh.name, "raw:", 4) == 0;
@@ -161,6 +162,7 @@ void camera_watch_accept(camera_watch *watch, const camera_frame *got, int64_t n
     watch->last_frame_ns = now_ns;
     watch->last_capture_ns = got->image.time_ns;
     watch->seq = (uint16_t)(watch->seq + got->dropped + 1);
+    watch->sequence += got->dropped + 1;
 }
 
 void camera_watch_release(camera_watch *watch)

@@ -35,6 +35,7 @@ typedef struct camera_watch {
     uint32_t dropped;             /* frames that were refused since the last one that was not */
     const char *complaint;        /* about silence */
     uint16_t seq;                 /* of the last FRAME */
+    uint64_t sequence;            /* of the last frame, which goes on when the camera is opened again */
     uint64_t failures;
     bool told;                    /* people know that there are no frames */
     bool news;

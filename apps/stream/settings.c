@@ -159,7 +159,8 @@ static bool set_preview(stream_settings *settings, const char *value, error_text
 {
     struct addrinfo *address = net_address_parse(value, SOCK_STREAM);
     if (address == NULL) {
-        error_text_set(error, "expected PORT or HOST:PORT, with a number such as 0.0.0.0 for HOST, not \"%.60s\"", value);
+        error_text_set(error, "expected PORT or HOST:PORT, with a number such as 0.0.0.0 for HOST, not \"%.60s\"",
+                       value);
         return false;
     }
     freeaddrinfo(address);

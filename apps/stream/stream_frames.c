@@ -60,6 +60,8 @@ static void end_recording(stream *self, const error_text *reason)
 static void record(stream *self, const camera_frame *got)
 {
     error_text reason;
+    camera_frame numbered = *got;
+    numbered.image.sequence = self->camera.sequence;
     if (self->settings.record[0] == '\0' || (self->recording_begun && self->recording == NULL))
         return;
     if (!self->recording_begun) {
@@ -68,7 +70,7 @@ static void record(stream *self, const camera_frame *got)
         self->recording_begun = true;
         self->recording = recording_open(self->settings.record, rate_hz, &reason);
     }
-    if (self->recording == NULL || !recording_add(self->recording, got, &reason))
+    if (self->recording == NULL || !recording_add(self->recording, &numbered, &reason))
         end_recording(self, &reason);
 }
 

@@ -130,9 +130,10 @@ static void record_for_ever(const char *path)
 {
     error_text error;
     recording *file = recording_open(path, 0, &error);
-    for (unsigned i = 0; file != NULL; i++) {
+    bool going_on = file != NULL;
+    for (unsigned i = 0; going_on; i++) {
         camera_frame given = large_frame(i);
-        recording_add(file, &given, &error);
+        going_on = recording_add(file, &given, &error);
         nanosleep(&(struct timespec){0, 200000}, NULL);
     }
     _exit(1);

@@ -7,9 +7,9 @@ render=$3
 . "$1/expect.sh"
 
 kinds=19
-frames=12
+frames=10
 
-# 1: of the report's last part, the number behind a name, for each kind or for one.
+# numbers NAME [KIND]: from the last part of the report, for each kind or for one.
 numbers() {
     sed -n "s/.*\"kind\":\"${2:-[a-z-]*}\",\"frames\".*\"$1\":\\([0-9.]*\\).*/\\1/p" out
 }
@@ -20,6 +20,7 @@ run 0 --frames $frames --strict
 expect_lines err 0
 [ "$(numbers cms | wc -l)" -eq $kinds ] || fail "not $kinds kinds"
 [ "$(numbers cms | sort -u)" = 0 ] || fail "code markers where there are none"
+[ "$(numbers tms | sort -u)" = 0 ] || fail "tape markers where there are none"
 for kind in finder-lattice finder-rows qr-rows random-cells; do
     [ "$(numbers frames_with_finders $kind)" -ge $((frames / 2)) ] || fail "hardly any finder pattern in $kind"
 done
@@ -31,15 +32,15 @@ done
 
 mkdir sheets kept
 "$render" --ids 5,-6,7 --px-per-module 6 --size 1024x512 --light 255 -o sheets/tape-00.png || fail "no sheet"
-run 1 --sheets sheets --kinds tape,tiles --frames 30 --strict --keep kept
+run 1 --sheets sheets --kinds tape,tiles --frames 12 --strict --keep kept
 expect_lines err 1
 expect err "code markers were read where there are none"
 expect out '"id":-6,'
-expect out '{"kind":"tape","frames":30,'
+expect out '{"kind":"tape","frames":12,'
 expect_none out '{"kind":"tiles","frame":'
 [ "$(find kept -name 'tape-0000*.pgm' | wc -l)" -eq "$(grep -c '"kind":"tape","frame":' out)" ] ||
     fail "not a picture for each frame with a reading"
-run 0 --sheets sheets --kinds tape --frames 30 -o report.json
+run 0 --sheets sheets --kinds tape --frames 12 -o report.json
 expect_lines out 0
 grep -q '"id":-6,' report.json || fail "no report in its file"
 
@@ -63,7 +64,7 @@ expect_refusal 2 "unexpected argument" tiles
 expect_refusal 2 "--raw and --output" --raw -
 expect_refusal 1 "nowhere" --sheets nowhere
 expect_refusal 1 "--output nowhere/report.json" -o nowhere/report.json --frames 1
-expect_refusal 1 "nowhere/tape-000" --sheets sheets --kinds tape --frames 30 --keep nowhere -o report.json
+expect_refusal 1 "nowhere/tape-000" --sheets sheets --kinds tape --frames 12 --keep nowhere -o report.json
 mkdir broken
 echo "P5 9 9 255" >broken/short-00.pgm
 expect_refusal 1 "broken/short-00.pgm" --sheets broken --kinds short --frames 1 -o report.json

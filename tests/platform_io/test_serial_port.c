@@ -1,5 +1,5 @@
-/* Ports that libserialport knows, which pseudo terminals are not: its functions are taken over, with a pseudo terminal
- * behind them. */
+/* Ports that libserialport knows, which pseudo terminals are not: its functions are taken over, with a pseudo
+ * terminal behind them. */
 #define _XOPEN_SOURCE 700
 #include "serial_port.h"
 

@@ -185,6 +185,7 @@ static void unplugged_camera_comes_back(void **state)
     fake.status = CAMERA_FRAME;
     assert_true(step(100));
     assert_int_equal(watch.seq, 6);
+    assert_int_equal(watch.sequence, 6);
     expect_news("camera v4l2:/dev/video9: gives frames again");
     assert_false(camera_watch_is_lost(&watch));
 }

@@ -179,7 +179,7 @@ static void slow_viewers(void **state)
     assert_young_and_honest(&seen);
 }
 
-/* A pipe in the place of the recording that takes a little and then nothing more, as a disk that has gone to sleep. */
+/* A pipe in the place of the recording that takes a little and then nothing, as a disk that has gone to sleep. */
 static void disk_that_does_not_answer(void **state)
 {
     (void)state;

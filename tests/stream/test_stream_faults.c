@@ -34,8 +34,10 @@ static void expect_whole_recording(const char *path)
     stream_host player;
     snprintf(camera_name, sizeof camera_name, "file:%s@max", path);
     assert_true(host_open(&player));
-    assert_true(host_start(&player, STREAM_PROGRAM, ARGUMENTS("--camera", camera_name, "--output", "file:/dev/null")));
-    assert_int_equal(host_wait(&player, SOON_MS), 0);
+    assert_true(host_start(&player, STREAM_PROGRAM, ARGUMENTS("--camera", camera_name, "--output",
+                                                             "file:/dev/null")));
+    if (host_wait(&player, SOON_MS) != 0)
+        fail_msg("%s", player.said);
     assert_string_equal(player.said, "");
     host_close(&player);
 }
@@ -44,7 +46,7 @@ static void expect_whole_recording(const char *path)
 static void term_at_any_moment(void **state)
 {
     (void)state;
-    enum { TIMES = 12 };
+    enum { TIMES = 5 };
     char folder[] = "/tmp/tapemark-stream-faults-XXXXXX", path[100], times[110];
     tapemark_record record;
     assert_non_null(mkdtemp(folder));
@@ -53,7 +55,9 @@ static void term_at_any_moment(void **state)
     for (int i = 0; i < TIMES; i++) {
         start(ARGUMENTS("--camera", WALK "@200", "--repeat", "yes", "--serial", "LINE:921600", "--encoding", "cobs",
                         "--record", path));
-        expect_record(TAPEMARK_RECORD_FRAME);
+        /* The recording begins behind the first of them. */
+        for (int frames = 0; frames < 3; frames++)
+            expect_record(TAPEMARK_RECORD_FRAME);
         nanosleep(&(struct timespec){0, rand() % 40000000}, NULL);
         assert_int_equal(kill(host.program, SIGTERM), 0);
         assert_int_equal(host_wait(&host, SOON_MS), 0);
@@ -122,11 +126,12 @@ static void pipe_that_falls_silent(void **state)
     assert_int_equal(write(end, bytes, size), size);
     expect_frame(tells_picture, "from the pipe");
     expect_frame(tells_lost_camera, "once nothing comes any more");
-    host_command(&host, 1, "PING", NULL, "here");
-    expect_record(TAPEMARK_RECORD_ANSWER);
+    host_command(&host, 1, "SET", "exposure", "500");
+    tapemark_record answer = expect_record(TAPEMARK_RECORD_ANSWER);
+    assert_string_equal(answer.as.answer.text, "does not answer");
     const int64_t told_ns = host_clock_ns();
     end_program();
-    assert_in_range(host_clock_ns() - told_ns, 0, 300000000);
+    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     close(end);
     unlink(path);
 }
@@ -143,7 +148,7 @@ static void pipe_that_nobody_writes_to(void **state)
     expect_frame(tells_lost_camera, "while nobody has opened the pipe");
     const int64_t told_ns = host_clock_ns();
     end_program();
-    assert_in_range(host_clock_ns() - told_ns, 0, 300000000);
+    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     unlink(path);
 }
 
@@ -185,7 +190,7 @@ static bool tells_broken_map(const tapemark_frame_record *head)
 static void half_a_map_leaves_the_old_one(void **state)
 {
     (void)state;
-    enum { CUTS = 10 };
+    enum { CUTS = 6 };
     static char map[1 << 20];
     char path[] = "/tmp/tapemark-stream-half-XXXXXX";
     const size_t size = read_file(STREAM_DATA "/map.json", map, sizeof map);

@@ -1,5 +1,5 @@
-/* The other end of a line, byte by byte: when each frame begins and ends on the wire. Bytes are taken as they come; on
- * a serial line each then leaves as its rate has it, one after the other, as from the hardware of a serial port. */
+/* The other end of a line, byte by byte: when each frame begins and ends on the wire. Bytes are taken as they come;
+ * on a serial line each then leaves as its rate has it, one after the other, as from a serial port's hardware. */
 #ifndef TIMED_LINE_H
 #define TIMED_LINE_H
 
@@ -34,7 +34,7 @@ typedef struct timed_frame {
 /* 8 data bits, a start and a stop bit. */
 timed_line timed_line_of(int descriptor, unsigned baud);
 
-/* The next whole frame with a time; false when none comes in time. What goes between frames takes its time as well. */
+/* The next whole frame with a time; false when none comes in time. What goes between frames takes its time, too. */
 bool timed_line_frame(timed_line *line, int timeout_ms, timed_frame *got);
 
 #endif

@@ -17,6 +17,13 @@ static void check_frame(walk_check *check, const tapemark_frame_record *head)
     const bool tells_drops = (head->flags & TAPEMARK_FRAME_FRAMES_DROPPED) != 0;
     check->incomplete += check->expected > 0;
     check->expected = head->records;
+    if ((head->flags & TAPEMARK_FRAME_CAMERA_LOST) != 0) {
+        /* It has a number of its own, but no place in the walk. */
+        check->lost++;
+        check->position += (uint16_t)(step - 1);
+        check->seq = head->seq;
+        return;
+    }
     check->frames++;
     check->dropped += head->dropped;
     if ((head->flags & needed) != needed || head->width_px != 480 || head->height_px != 270 || step == 0 ||

@@ -12,6 +12,7 @@ typedef struct walk_check {
     uint64_t frames, cms, tms, places;
     uint64_t wrong;       /* records that say what is not so */
     uint64_t incomplete;  /* frames of which records are missing */
+    uint64_t lost;        /* FRAMEs of a camera that gives nothing, as when the machine stands still for long */
     uint64_t dropped;     /* frames, as FRAMEs tell */
     uint64_t position;    /* of the last FRAME in the endless walk, from 1 */
     uint16_t seq;

@@ -79,8 +79,9 @@ static bool measure(soak *self)
 static void tell(const soak *self, double minutes)
 {
     const frame_check *check = &self->session->check;
-    printf("%5.1f min: %llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, %llu incomplete for %llu damaged "
-           "bytes, %llu lost; %u times out, %u frozen, %u held, %u reloads, %u not back, %u late; %ld KiB, %d descriptors\n",
+    printf("%5.1f min: %llu frames, %llu whole, %llu CMs, %llu TMs, %llu wrong, "
+           "%llu incomplete for %llu damaged bytes, %llu without a camera; "
+           "%u times out, %u frozen, %u held, %u reloads, %u not back, %u late; %ld KiB, %d descriptors\n",
            minutes, (unsigned long long)check->frames, (unsigned long long)check->whole,
            (unsigned long long)check->cms, (unsigned long long)check->tms, (unsigned long long)check->wrong,
            (unsigned long long)check->incomplete, (unsigned long long)self->session->damaged_bytes,
@@ -110,15 +111,16 @@ static bool run(soak *self, double minutes)
     return true;
 }
 
-void soak_run(stream_session *session, double minutes)
+void soak_run(stream_session *session, double minutes, const char *camera)
 {
     soak self = {.session = session};
     frame_check *check = &session->check;
     frame_check_begin(check, USB_WIDTH_PX, USB_HEIGHT_PX, USB_RATE_HZ);
     check->each_is_new = true;
-    machine_do(&session->board, SOON_MS, "load xhci-pci; load uvcvideo; wait_for /dev/video0");
+    machine_do(&session->board, SOON_MS,
+               "load xhci-pci; load uvcvideo; wait_for /dev/video0; udevadm trigger; udevadm settle");
     session_damage(session, true);
-    const bool ran = session_start(session, "v4l2:/dev/video0", "GREY", "cobs", 921600) &&
+    const bool ran = session_start(session, camera, "GREY", "cobs", 921600) &&
                      session_until(session, &check->whole, BETWEEN_FRAMES, SOON_MS) && run(&self, minutes);
     const double end_ms = session_stop_ms(session);
     session_tell(session, ran, "soak", "%g minutes", minutes);

@@ -4,7 +4,7 @@
 
 #include "stream_session.h"
 
-/* Nothing has been done with the machine yet. */
-void soak_run(stream_session *session, double minutes);
+/* Nothing has been done with the machine yet. The camera is the USB camera, by either of its names. */
+void soak_run(stream_session *session, double minutes, const char *camera);
 
 #endif

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ANSWER_MS = 20000, QUIET_MS = 150, DAMAGE_EVERY_BYTES = 1500 };
+enum { ANSWER_MS = 20000, QUIET_MS = 150, DAMAGE_EVERY_BYTES = 1200 };
 
 static void take(stream_session *session, const tapemark_record *record)
 {
@@ -108,14 +108,17 @@ double session_stop_ms(stream_session *session)
     return -1;
 }
 
-bool session_said(stream_session *session, unsigned expected)
+bool session_said(stream_session *session, const char *text, unsigned lines_max)
 {
     const int status = machine_do(&session->board, ANSWER_MS,
-                                  "grep -v -e 'gives no frames$' -e 'gives frames again$' /run/said | wc -l");
-    const bool as_expected = status == 0 && strtoul(session->board.answer, NULL, 10) == expected;
-    if (!as_expected && machine_do(&session->board, ANSWER_MS, "cat /run/said") == 0)
-        printf("       expected %u messages; the program said:\n%s", expected, session->board.answer);
-    return as_expected;
+                                  "grep -v -e 'gives no frames$' -e 'gives frames again$' -e 'does not answer$' "
+                                  "/run/said | wc -l");
+    bool good = status == 0 && strtoul(session->board.answer, NULL, 10) <= lines_max;
+    good = machine_do(&session->board, ANSWER_MS, "cat /run/said") == 0 && good &&
+           (text == NULL || strstr(session->board.answer, text) != NULL);
+    if (!good)
+        printf("       the program said:\n%s", session->board.answer);
+    return good;
 }
 
 static uint32_t roll(stream_session *session)

@@ -39,9 +39,10 @@ void session_for(stream_session *session, int time_ms);
  * did not end as it should. */
 double session_stop_ms(stream_session *session);
 
-/* Lines that the program said on standard error, without those of a camera that was silent for half a second, which
- * any camera may be where the machine is that slow. They are told when they are not as many as expected. */
-bool session_said(stream_session *session, unsigned expected);
+/* Whether the program has said this on standard error (NULL: no matter what), and no more lines than that, without
+ * those of a camera that was silent for half a second or slow to open, as any camera may be where the machine is that
+ * slow. If not, what it said is told. */
+bool session_said(stream_session *session, const char *text, unsigned lines_max);
 
 /* Flips bits in one of so many bytes from now on; 0: in none. */
 void session_damage(stream_session *session, bool damaging);

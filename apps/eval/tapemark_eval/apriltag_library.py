@@ -39,6 +39,7 @@ def _load():
     library.apriltag_detector_add_family_bits.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int]
     library.apriltag_detector_detect.restype = ctypes.POINTER(_Array)
     library.apriltag_detector_detect.argtypes = [ctypes.c_void_p, ctypes.POINTER(_Image)]
+    library.tag36h11_destroy.argtypes = [ctypes.c_void_p]
     library.apriltag_detections_destroy.argtypes = [ctypes.c_void_p]
     library.apriltag_to_image.restype = ctypes.POINTER(_Image)
     library.apriltag_to_image.argtypes = [ctypes.c_void_p, ctypes.c_int]
@@ -53,7 +54,7 @@ class AprilTag36h11:
     BITS_CORRECTED = 2  # the library's default
 
     def __init__(self, decimate):
-        self._library, self._images = _load()
+        self._library, _ = _load()
         self._family = self._library.tag36h11_create()
         self._detector = self._library.apriltag_detector_create()
         self._library.apriltag_detector_add_family_bits(self._detector, self._family, self.BITS_CORRECTED)
@@ -70,11 +71,15 @@ class AprilTag36h11:
         self._library.apriltag_detections_destroy(found)
         return ids
 
-    def picture(self, tag_id):
-        """The black square of a tag, a texel a module, as the library draws it; without its quiet zone."""
-        drawn = self._library.apriltag_to_image(self._family, tag_id)
-        image = drawn.contents
-        rows = numpy.ctypeslib.as_array(image.buf, shape=(image.height, image.stride))[:, :image.width].copy()
-        self._images.image_u8_destroy(drawn)
-        quiet = (self._family.contents.total_width - self._family.contents.width_at_border) // 2
-        return rows[quiet:-quiet, quiet:-quiet]
+
+def picture(tag_id):
+    """The black square of a tag36h11, a texel a module, as the library draws it; without its quiet zone."""
+    library, images = _load()
+    family = library.tag36h11_create()
+    drawn = library.apriltag_to_image(family, tag_id)
+    image = drawn.contents
+    rows = numpy.ctypeslib.as_array(image.buf, shape=(image.height, image.stride))[:, :image.width].copy()
+    images.image_u8_destroy(drawn)
+    quiet = (family.contents.total_width - family.contents.width_at_border) // 2
+    library.tag36h11_destroy(family)
+    return rows[quiet:-quiet, quiet:-quiet]

@@ -1,4 +1,4 @@
-"""What happens to prints: cells that are wrong, dirt on them, pieces torn off. Pictures are lists of rows of bytes."""
+"""What happens to prints: cells that are wrong, dirt, pieces torn off. Pictures are lists of rows of bytes."""
 
 import math
 

@@ -4,14 +4,14 @@ places, angles and lights, image by image."""
 import math
 import random
 
-from .camera import CAMERA, CM_PITCH_MODULES, TAPE_MODULES, WIDTH_PX, px_per_module
+from .camera import CAMERA, CM_PITCH_MODULES, MODULE_MM, TAPE_MODULES, WIDTH_PX, px_per_module
 
 MIDDLE_M = 2.2  # as near as the whole tape is in view
 
 
 class Experiment:
-    """`scene` makes options of tapemark-render of (step's value, random source); `damage` names what is done to the
-    markers' prints instead."""
+    """`scene` makes options of tapemark-render of (step's value, random source, length of the row of markers in mm);
+    `damage` names what is done to the markers' prints instead."""
 
     def __init__(self, name, title, axis, values, scene, damage=None, distance_m=None, twin=None, harder=False):
         self.name = name
@@ -53,27 +53,27 @@ def _view(source, distance_m):
     return [*CAMERA, *_place(source, distance_m), *_head_on(source)]
 
 
-def _distance(value, source):
+def _distance(value, source, _):
     return _view(source, value)
 
 
 def _angle(axis, distance_m):
-    def scene(value, source):
+    def scene(value, source, _):
         others = [each for each in ("--yaw", "--pitch", "--roll") if each != axis]
         words = [*CAMERA, *_place(source, distance_m), axis, str(value * source.choice((-1, 1)))]
         return words + [word for other in others for word in (other, f"{source.uniform(-3, 3):.3f}")]
     return scene
 
 
-def _exposure(value, source):
+def _exposure(value, source, _):
     return _view(source, MIDDLE_M) + ["--exposure", str(value)]
 
 
-def _gradient(value, source):
+def _gradient(value, source, _):
     return _view(source, MIDDLE_M) + ["--gradient", str(value), "--gradient-angle", f"{source.uniform(0, 360):.1f}"]
 
 
-def _shadow(value, source):
+def _shadow(value, source, _):
     """The edge of a shadow across the markers, at any angle, as sharp as the sun makes it some way off."""
     return _view(source, MIDDLE_M) + ["--shadow", str(value), "--shadow-angle", f"{source.uniform(0, 360):.1f}",
                                       "--shadow-offset", f"{source.uniform(-60, 60):.1f}",
@@ -81,26 +81,26 @@ def _shadow(value, source):
 
 
 def _motion(angle_deg):
-    def scene(value, source):
+    def scene(value, source, _):
         words = [*CAMERA, *_place(source, MIDDLE_M)]
         motion_px = value * px_per_module(MIDDLE_M)
         return words + ["--motion", f"{motion_px:.3f}", "--motion-angle", str(angle_deg)]
     return scene
 
 
-def _defocus(value, source):
+def _defocus(value, source, _):
     return _view(source, MIDDLE_M) + ["--defocus", f"{value * px_per_module(MIDDLE_M):.3f}"]
 
 
-def _roll(value, source):
+def _roll(value, source, _):
     words = [*CAMERA, *_place(source, 1.5), "--roll", str(value + source.uniform(-3, 3))]
     return words + ["--yaw", f"{source.uniform(-3, 3):.3f}", "--pitch", f"{source.uniform(-3, 3):.3f}"]
 
 
-def _occlusion(value, source):
-    """Posts before the row: one, or two with a gap between them, hide a share of the tape's length."""
+def _occlusion(value, source, row_mm):
+    """Something before the row: one thing, or two with a gap between them, that hide a share of its length."""
     words = [*CAMERA, "--distance", f"{MIDDLE_M}m", "--x", "0", "--y", f"{source.uniform(-30, 30):.3f}"]
-    length_px = TAPE_MODULES * px_per_module(MIDDLE_M)
+    length_px = row_mm / MODULE_MM * px_per_module(MIDDLE_M)
     left_px = WIDTH_PX / 2 - length_px / 2
     at_px = source.random()
     if source.random() < 0.5:
@@ -114,7 +114,7 @@ def _occlusion(value, source):
     return words
 
 
-def _damaged(_, source):
+def _damaged(_, source, __):
     return _view(source, MIDDLE_M)
 
 
@@ -128,7 +128,8 @@ EXPERIMENTS = (
     Experiment("yaw-3m", "Yaw at 3 m", "yaw, degrees", ANGLES, _angle("--yaw", 3), distance_m=3, harder=True),
     Experiment("yaw-1.5m", "Yaw at 1.5 m", "yaw, degrees", ANGLES, _angle("--yaw", 1.5), distance_m=1.5, harder=True),
     Experiment("pitch-3m", "Pitch at 3 m", "pitch, degrees", ANGLES, _angle("--pitch", 3), distance_m=3, harder=True),
-    Experiment("pitch-1.5m", "Pitch at 1.5 m", "pitch, degrees", ANGLES, _angle("--pitch", 1.5), distance_m=1.5, harder=True),
+    Experiment("pitch-1.5m", "Pitch at 1.5 m", "pitch, degrees", ANGLES, _angle("--pitch", 1.5), distance_m=1.5,
+               harder=True),
     Experiment("exposure", "Exposure", "exposure (1: paper is 203 of 255)",
                (0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 6, 8, 10, 11, 12, 14), _exposure,
                distance_m=MIDDLE_M),
@@ -143,7 +144,7 @@ EXPERIMENTS = (
     Experiment("defocus", "Defocus", "sigma, modules of the tape", (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8), _defocus,
                distance_m=MIDDLE_M, twin=BLUR_TWIN, harder=True),
     Experiment("roll", "Roll at 1.5 m", "roll, degrees", tuple(range(0, 360, 15)), _roll, distance_m=1.5),
-    Experiment("occlusion", "Occlusion", "share of the tape's length that is hidden",
+    Experiment("occlusion", "Occlusion", "share of the row's length that is hidden",
                (0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8), _occlusion, distance_m=MIDDLE_M),
     Experiment("cells", "Cells flipped", "share of the code's cells", (0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3), _damaged,
                damage="cells", distance_m=MIDDLE_M, harder=True),
@@ -167,4 +168,6 @@ def steps_of(experiment, limit):
     values = experiment.values
     if limit is None or limit >= len(values):
         return values
+    if limit == 1:
+        return values[:1]
     return tuple(values[math.floor(i * (len(values) - 1) / (limit - 1) + 0.5)] for i in range(limit))

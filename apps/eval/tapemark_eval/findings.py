@@ -17,6 +17,11 @@ def reach(points, least):
     return last
 
 
+def last(points, least):
+    """The last value at which the share is this at least, gaps or not; None where there is none."""
+    return max((value for value, share in points if share >= least), default=None)
+
+
 def half_way(points):
     """Where the share falls through one half, by straight lines between the steps; None where it does not."""
     for (value, share), (next_value, next_share) in zip(points, points[1:]):

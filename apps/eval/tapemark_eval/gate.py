@@ -2,8 +2,8 @@
 
 The same decoder gives the same counts again, for scenes and seeds are fixed. Another decoder may lose some and win
 others by chance, and that chance is binomial: a step has fallen when its share of right markers lies below Wilson's
-95 % interval of the share of before, and so has the sum of all steps when it lies below its own. A wrong id where there
-were fewer before is never chance. Needs nothing but Python."""
+95 % interval of the share of before, and so has the sum of all steps when it lies below its own. More wrong ids than
+before are never chance. Needs nothing but Python."""
 
 import argparse
 import json
@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 from . import experiments, intervals, tape_print
-from .camera import things
+from .camera import row_mm, things
 from .judge import judge
 from .scene_source import SceneError, SceneSource
 from .tapemark_library import Tapemark
@@ -40,6 +40,8 @@ STEPS = {
 
 COUNTS = (("markers", "right", "code markers"), ("tms", "tms_right", "tape markers"))
 
+COUNT_KEYS = ("markers", "right", "tms", "tms_right", "wrong")
+
 
 class GateError(Exception):
     """What is to be compared cannot be."""
@@ -47,7 +49,7 @@ class GateError(Exception):
 
 def _scene(experiment, value, image, decoder, folder):
     source = experiments.random_of(experiment.name, value, image)
-    view = [*experiment.scene(value, source), "--seed", str(image + 1)]
+    view = [*experiment.scene(value, source, row_mm(None)), "--seed", str(image + 1)]
     if experiment.damage is None:
         return view + things("tape", None)
     path = Path(folder) / "damaged-tape.pgm"
@@ -72,21 +74,35 @@ def _step(source, decoder, name, value, folder, extra_words):
 
 def measure(source, decoder, folder, extra_words=()):
     """Counts of all steps."""
-    return [_step(source, decoder, name, value, folder, list(extra_words))
-            for name, values in STEPS.items() for value in values]
+    return [_step(source, decoder, name, value, folder, list(extra_words)) for name, value in _all_steps()]
 
 
 def _sum_of(steps):
     total = {"experiment": "all", "value": "steps"}
-    for key in ("markers", "right", "tms", "tms_right", "wrong"):
+    for key in COUNT_KEYS:
         total[key] = sum(step[key] for step in steps)
     return total
 
 
+def _all_steps():
+    return [(name, value) for name, values in STEPS.items() for value in values]
+
+
+def _counts_of(path):
+    """The baseline in a report; its steps are those of now."""
+    try:
+        before = json.loads(path.read_text())["gate"]
+        steps = [(each["experiment"], each["value"]) for each in before]
+        whole = all(isinstance(each[key], int) for each in before for key in COUNT_KEYS)
+    except (ValueError, TypeError, KeyError) as error:
+        raise GateError(f"{path}: holds no counts of a gate; --update writes them") from error
+    if steps != _all_steps() or not whole:
+        raise GateError(f"{path}: holds counts of other steps; --update writes them anew")
+    return before
+
+
 def compare(before, now):
     """What has fallen, a line each."""
-    if [(each["experiment"], each["value"]) for each in before] != [(each["experiment"], each["value"]) for each in now]:
-        raise GateError("the steps are others than those of the baseline: make it anew with --update")
     fallen = []
     for old, new in zip([*before, _sum_of(before)], [*now, _sum_of(now)]):
         where = f"{old['experiment']} {old['value']}"
@@ -116,14 +132,15 @@ def _arguments():
 def main():
     chosen = _arguments()
     decoder = Tapemark(chosen.library)
-    report = json.loads(chosen.report.read_text())
+    before = None if chosen.update else _counts_of(chosen.report)
     with tempfile.TemporaryDirectory() as folder, SceneSource(chosen.scenes) as source:
         now = measure(source, decoder, folder, chosen.extra_words.split())
     if chosen.update:
+        report = json.loads(chosen.report.read_text())
         report["gate"] = now
         chosen.report.write_text(json.dumps(report, separators=(",", ":")) + "\n")
         return 0
-    fallen = compare(report["gate"], now)
+    fallen = compare(before, now)
     for line in fallen:
         print(f"fallen: {line}")
     total = _sum_of(now)
@@ -135,5 +152,5 @@ def main():
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (SceneError, GateError, OSError, ValueError, KeyError) as error:
+    except (SceneError, GateError, OSError, ValueError) as error:
         sys.exit(f"tapemark-eval-gate: {error}")

@@ -4,7 +4,7 @@ from .camera import CM_IDS, MARKER_IDS, TM_CODE
 
 
 class Verdict:
-    """Counts of one frame: markers wholly in view, those of them that were read, and wrong readings; the same for TMs.
+    """Counts of a frame: markers wholly in view, those of them that were read, and wrong readings; the same for TMs.
 
     `something`: at least one right id or code was read, of a marker that is wholly in view or not."""
 

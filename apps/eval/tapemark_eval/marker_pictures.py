@@ -4,8 +4,7 @@ import cv2
 import numpy
 import zxingcpp
 
-from . import damage, stag_markers
-from .apriltag_library import AprilTag36h11
+from . import apriltag_library, damage, stag_markers
 from .camera import GAP_MM, MARKER_IDS, MARKER_MM
 
 SYSTEMS = ("aruco", "qr", "stag", "apriltag")
@@ -20,7 +19,7 @@ def _aruco(marker_id):
 
 
 def _qr(marker_id):
-    """Version 1, 21 modules wide, with as much error correction as there is: a letter and a digit fit at any level."""
+    """Version 1, 21 modules wide, with as much error correction as there is: two characters fit at any level."""
     code = zxingcpp.create_barcode(f"T{marker_id}", zxingcpp.BarcodeFormat.QRCode, ec_level="H", version=1)
     return numpy.asarray(zxingcpp.write_barcode_to_image(code, scale=1, add_quiet_zones=False))
 
@@ -33,7 +32,7 @@ def picture(system, marker_id):
         return _qr(marker_id)
     if system == "stag":
         return stag_markers.picture(marker_id)
-    return AprilTag36h11(1).picture(marker_id)
+    return apriltag_library.picture(marker_id)
 
 
 def quiet_mm(system):

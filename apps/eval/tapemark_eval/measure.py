@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy
 
 from . import experiments, marker_pictures, tape_print
-from .camera import things
+from .camera import row_mm, things
 from .judge import judge
 from .tally import Tally
 
@@ -33,7 +33,8 @@ class Bench:
     def words(self, experiment, value, image, marker):
         """The scene of an image, as options of tapemark-render."""
         source = experiments.random_of(experiment.name, value, image)
-        view = [*experiment.scene(value, source), "--seed", str(image + 1)]
+        quiet_mm = None if marker == "tape" else self.pictures[marker][1]
+        view = [*experiment.scene(value, source, row_mm(quiet_mm)), "--seed", str(image + 1)]
         if experiment.damage is None:
             return view + things(marker, self.pictures.get(marker))
         if marker == "tape":

@@ -38,7 +38,7 @@ class Tally:
         if marker == "tape":
             tms, tms_right = self._sum("tm_whole"), self._sum("tm_right")
             ids = sum(each.id_read for each in seen)
-            numbers |= {"id": ids, "id_95": _rounded(intervals.wilson(ids, images)), "tms": tms, "tms_right": tms_right,
-                        "tms_95": _rounded(intervals.wilson(tms_right, tms)), "tms_wrong": self._sum("tm_wrong"),
-                        "unasked": sum(each.something for each in self.verdicts) - something}
+            numbers |= {"id": ids, "id_95": _rounded(intervals.wilson(ids, images)),
+                        "tms": tms, "tms_right": tms_right, "tms_95": _rounded(intervals.wilson(tms_right, tms)),
+                        "tms_wrong": self._sum("tm_wrong")}
         return numbers

@@ -29,8 +29,8 @@ class Tm(ctypes.Structure):
 
 class Stats(ctypes.Structure):
     _fields_ = [(name, ctypes.c_uint32) for name in (
-        "limits", "work", "tiles", "tiles_active", "pattern_hits", "finders_tried", "finders", "segments", "cms_tried",
-        "cms_read")] + [("rejects", ctypes.c_uint32 * REJECT_COUNT)]
+        "limits", "work", "tiles", "tiles_active", "pattern_hits", "finders_tried", "finders", "segments",
+        "cms_tried", "cms_read")] + [("rejects", ctypes.c_uint32 * REJECT_COUNT)]
 
 
 class Result(ctypes.Structure):

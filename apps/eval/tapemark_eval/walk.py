@@ -7,6 +7,7 @@ the floor by the wall and it looks 30 degrees down."""
 import json
 import statistics
 import subprocess
+from collections import Counter
 
 import cv2
 
@@ -37,6 +38,7 @@ CONDITIONS = {
     "C": {"title": "tape on the floor, looking 30 degrees down", "on": "floor", "above_floor_m": 0, "pitch_deg": -30},
 }
 VIDEOS = {"tape": "tape", "aruco": "aruco", "qr": "qrcode", "stag": "stag"}
+VIDEO_IDS = range(57)  # of the inventors' map, on all systems' markers
 
 
 # ---- What stands in the rooms ------------------------------------------------------------------------------
@@ -108,11 +110,11 @@ def _scene(condition, folder):
 
 
 class FrameTruth:
-    """Of one frame: ids wholly in view, all ids in view, and codes of TMs in view."""
+    """Of one frame: how often each id is wholly in view, how often at all, and the codes of TMs in view."""
 
     def __init__(self, whole, shown, codes):
-        self.whole = whole
-        self.shown = shown
+        self.whole = Counter(whole)
+        self.shown = Counter(shown)
         self.codes = codes
 
 
@@ -122,21 +124,20 @@ def _code(ids):
 
 def _truth_of_scene(truth, marker):
     if marker == "tape":
-        whole, shown = {each["id"] for each in truth["cms"] if each["full"]}, {each["id"] for each in truth["cms"]}
+        whole, shown = [each["id"] for each in truth["cms"] if each["full"]], [each["id"] for each in truth["cms"]]
         return FrameTruth(whole, shown, {_code(each["ids"]) for each in truth["segments"] if len(each["ids"]) >= 3})
     numbers = [(_marker_id(marker, each["picture"]), each["full"]) for each in truth["pictures"]]
-    return FrameTruth({each for each, full in numbers if full}, {each for each, _ in numbers}, set())
+    return FrameTruth([each for each, full in numbers if full], [each for each, _ in numbers], set())
 
 
 def _truth_of_video(truth, marker):
-    """Of the inventors' frames: other systems' markers stand where the CMs with the same numbers do; how much of them
-    is in view is not known."""
-    unsure = [each for each in truth.get("uncertain", []) if isinstance(each, dict)]
-    ids = {each["id"] for each in truth["cms"]} | {cm_id for each in unsure for cm_id in each.get("ids", [])}
+    """Of the inventors' frames: which CMs are in view is known; of other systems' markers, only which ids there are."""
     if marker != "tape":
-        return FrameTruth(set(), {abs(each) for each in ids}, set())
+        return FrameTruth([], VIDEO_IDS, set())
+    unsure = [each for each in truth.get("uncertain", []) if isinstance(each, dict)]
+    ids = [each["id"] for each in truth["cms"]] + [cm_id for each in unsure for cm_id in each.get("ids", [])]
     codes = {_code(each["ids"]) for each in truth["segments"] + unsure if len(each.get("ids", [])) >= 3}
-    return FrameTruth({each["id"] for each in truth["cms"] if each["full"]}, ids, codes)
+    return FrameTruth([each["id"] for each in truth["cms"] if each["full"]], ids, codes)
 
 
 class WalkTally:
@@ -148,7 +149,7 @@ class WalkTally:
         self.cpu_ms = []
 
     def add(self, reading, truth):
-        read = set(reading.ids) & truth.shown
+        read = Counter(reading.ids) & truth.shown
         right_tms = [code for code, directed in reading.tms
                      if code in truth.codes or (not directed and code[::-1] in truth.codes)]
         something = bool(read or right_tms)
@@ -156,11 +157,11 @@ class WalkTally:
         self.frames_read += something
         self.with_whole += bool(truth.whole)
         self.frames_read_with_whole += something and bool(truth.whole)
-        self.whole += len(truth.whole)
-        self.right_of_whole += len(read & truth.whole)
-        self.right += len(read)
+        self.whole += truth.whole.total()
+        self.right_of_whole += (read & truth.whole).total()
+        self.right += read.total()
         self.tms += len(right_tms)
-        self.wrong += sum(each not in truth.shown for each in reading.ids) + len(reading.tms) - len(right_tms)
+        self.wrong += len(reading.ids) - read.total() + len(reading.tms) - len(right_tms)
         self.cpu_ms.append(reading.cpu_ms)
 
     def numbers(self, whole_known):
