@@ -166,8 +166,9 @@ typedef struct tapemark_point {
     float y_px;
 } tapemark_point;
 
-/* Corners go top left, top right, bottom right, bottom left in the marker's own upright frame. A CM is believed for itself, when none of its cells contradicts its word; or as one of a segment whose ids ascend by
- * one (their signs left aside), with up to a tenth of its cells wrong. */
+/* Corners go top left, top right, bottom right, bottom left in the marker's own upright frame. A CM is believed for
+ * itself, when none of its cells contradicts its word; or as one of a segment whose ids ascend by one (their signs
+ * left aside), with up to a tenth of its cells wrong. */
 typedef struct tapemark_cm {
     int32_t id;
     tapemark_word word;
