@@ -166,7 +166,9 @@ typedef struct tapemark_point {
     float y_px;
 } tapemark_point;
 
-/* Corners go top left, top right, bottom right, bottom left in the marker's own upright frame. */
+/* Corners go top left, top right, bottom right, bottom left in the marker's own upright frame. A CM is believed for
+ * itself, when none of its cells contradicts its word; or as one of a segment whose ids ascend by one (their signs
+ * left aside), with up to a tenth of its cells wrong. */
 typedef struct tapemark_cm {
     int32_t id;
     tapemark_word word;
@@ -213,7 +215,8 @@ typedef enum tapemark_reject {
 enum {
     TAPEMARK_LIMIT_SCAN = 1,        /* too much texture: scan lines spread further apart, weakest parts left out */
     TAPEMARK_LIMIT_WORK = 2,        /* the work budget was spent */
-    TAPEMARK_LIMIT_CANDIDATES = 4,  /* more finder patterns than the workspace holds */
+    TAPEMARK_LIMIT_CANDIDATES = 4,  /* more finder patterns, or more of what far tapes are found by, than the
+                                     * workspace holds */
     TAPEMARK_LIMIT_CMS = 8,         /* more CMs than result.cm_capacity */
     TAPEMARK_LIMIT_TMS = 16,        /* more TMs than result.tm_capacity */
     TAPEMARK_LIMIT_LENGTH = 32      /* a segment went on beyond TAPEMARK_TM_MAX_CMS */
@@ -227,7 +230,7 @@ typedef struct tapemark_stats {
     uint32_t pattern_hits;       /* places where a scan line showed 1:1:3:1:1 */
     uint32_t finders_tried;      /* of those, the distinct ones that were looked at in both directions */
     uint32_t finders;            /* finder patterns located */
-    uint32_t segments;           /* rows of two or more of them */
+    uint32_t segments;           /* rows of two or more of them, and rows of far tapes found as a whole */
     uint32_t cms_tried;          /* pairs of neighbours looked at as a CM */
     uint32_t cms_read;           /* of those, CMs that were believed, whether or not there was room for them */
     uint32_t rejects[TAPEMARK_REJECT_COUNT];

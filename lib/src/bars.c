@@ -8,10 +8,7 @@ enum {
     BAR_SAMPLES = 10 /* light, dark, … four bars, then two of the quiet zone */
 };
 
-/* Lines across the tape, in modules from its middle. The outermost rows are left out: the bottom one is dark in
- * light CMs too, and both are the first to be mixed with what lies beside the tape. */
-enum { LINES = 9 };
-static const float line_v[LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f, 1.65f, 2.2f};
+const float tmi_line_v[TMI_LINES] = {-2.2f, -1.65f, -1.1f, -0.55f, 0, 0.55f, 1.1f, 1.65f, 2.2f};
 
 /* A line counts when its samples correlate with ideal bars at both ends by this much. */
 static const float line_bars_min = 0.3f;
@@ -60,6 +57,25 @@ static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stre
     return is_unresolved(place) ? real_max(sharp, gray_bars(value, place.finder)) : sharp;
 }
 
+/* Whether there is a fifth bar, half as much darker than the gap before it as the fourth one or more: behind the
+ * fourth there is paper, and what goes on is a grating. A wall behind the paper that is blurred into it, a module
+ * away, takes less than a third of the light. */
+static const float wall_max = 0.35f;
+
+static bool goes_on(const tmi_view *view, tmi_bars_place place, float stretch, uint32_t *reads)
+{
+    float value[4] = {0}; /* the last gap, the fourth bar, paper or a gap, paper or a fifth bar */
+    for (int i = 0; i < TMI_LINES; i += 2)
+        for (int k = 0; k < 4; k++) {
+            const float reach = stretch * (float)(BAR_FIRST + BAR_SAMPLES - 4 + k);
+            const tmi_point at = tmi_project(place.map, place.u + place.direction * reach, tmi_line_v[i]);
+            value[k] += tmi_sample(view, at.x, at.y);
+        }
+    *reads += 4 * (TMI_LINES / 2 + 1);
+    const float depth = (float)(TMI_LINES / 2 + 1) * (place.finder->light - place.finder->dark);
+    return value[2] - value[3] > real_max(wall_max * depth, 0.5f * (value[0] - value[1]));
+}
+
 /* Bars lie beyond what the homography was measured on, and perspective goes on: the best of a few scales. */
 static float best_stretch(const tmi_view *view, tmi_bars_place place, float *score, uint32_t *reads)
 {
@@ -68,13 +84,16 @@ static float best_stretch(const tmi_view *view, tmi_bars_place place, float *sco
     *score = -1;
     for (int s = 0; s < 5; s++) {
         float sum = 0;
-        for (int i = 0; i < LINES; i += 2)
-            sum += bars_on_line(view, place, stretches[s], line_v[i], reads);
+        for (int i = 0; i < TMI_LINES; i += 2)
+            sum += bars_on_line(view, place, stretches[s], tmi_line_v[i], reads);
         if (sum * (1.0f / 5) > *score) {
             *score = sum * (1.0f / 5);
             best = stretches[s];
         }
     }
+    /* A fifth bar that lies where light is looked for makes the bars seem further apart than they are. */
+    if (*score > 0 && (goes_on(view, place, best, reads) || goes_on(view, place, 0.96f * best, reads)))
+        *score = 0;
     return best;
 }
 
@@ -128,6 +147,21 @@ static bool code_on_line(const tmi_reader *reader, const tmi_segment *segment, i
     return true;
 }
 
+void tmi_vote(const uint32_t *codes, int clear, int lines, tmi_tm_reading *out)
+{
+    int most = 0;
+    for (int i = 0; i < clear; i++) {
+        int same = 0;
+        for (int j = 0; j < clear; j++)
+            same += codes[j] == codes[i];
+        if (same > most) {
+            most = same;
+            out->code = codes[i];
+        }
+    }
+    out->vote = lines > TMI_LINES / 3 ? (float)most / (float)lines : 0;
+}
+
 bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first, int count, float bars_min,
                  tmi_tm_reading *out)
 {
@@ -143,10 +177,10 @@ bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
     if (score_right < bars_min)
         return false;
     out->bars = real_min(score_left, score_right);
-    uint32_t codes[LINES];
+    uint32_t codes[TMI_LINES];
     int lines = 0, clear = 0;
-    for (int i = 0; i < LINES; i++) {
-        const float v = line_v[i];
+    for (int i = 0; i < TMI_LINES; i++) {
+        const float v = tmi_line_v[i];
         if (bars_on_line(reader->view, left, stretch_left, v, reads) < line_bars_min ||
             bars_on_line(reader->view, right, stretch_right, v, reads) < line_bars_min)
             continue;
@@ -154,16 +188,6 @@ bool tmi_tm_read(const tmi_reader *reader, const tmi_segment *segment, int first
         if (code_on_line(reader, segment, first, count, v, &codes[clear]))
             clear++;
     }
-    int most = 0;
-    for (int i = 0; i < clear; i++) {
-        int same = 0;
-        for (int j = 0; j < clear; j++)
-            same += codes[j] == codes[i];
-        if (same > most) {
-            most = same;
-            out->code = codes[i];
-        }
-    }
-    out->vote = lines > LINES / 3 ? (float)most / (float)lines : 0;
+    tmi_vote(codes, clear, lines, out);
     return true;
 }

@@ -7,12 +7,9 @@
 /* ---- Where things are printed -------------------------------------------------------------------------- */
 
 const uint8_t tmi_data_cell[TAPEMARK_DATA_BITS] = {
-    1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13,
-    17, 19, 20, 22, 23, 25, 26, 27, 28,
-    33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47,
-    49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63,
-    65, 67, 68, 70, 71, 73, 74, 75, 76, 78, 79,
-    81, 82, 83, 84, 85, 86, 87, 88, 89, 90, 91, 92, 93, 94, 95,
+    1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 17, 19, 20, 22, 23, 25, 26, 27, 28, 33, 34, 35, 36,
+    37, 38, 39, 40, 41, 42, 43, 44, 45, 46, 47, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63,
+    65, 67, 68, 70, 71, 73, 74, 75, 76, 78, 79, 81, 82, 83, 84, 85, 86, 87, 88, 89, 90, 91, 92, 93, 94, 95,
 };
 
 const uint8_t tmi_checksum_cell[TMI_CHECKSUM_BITS] = {18, 21, 24, 29, 66, 69, 72, 77};
@@ -216,7 +213,7 @@ tapemark_status tapemark_cm_grid(int32_t id, uint16_t rows[TAPEMARK_CELL_ROWS])
 
 enum {
     FINDER_MODULES = 7,
-    GAP_MODULES = 1  /* light, between a finder pattern and the cells */
+    GAP_MODULES = 1 /* light, between a finder pattern and the cells */
 };
 
 static const uint8_t finder_rows[TAPEMARK_HEIGHT_MODULES] = {0x7f, 0x41, 0x5d, 0x5d, 0x5d, 0x41, 0x7f};
@@ -240,8 +237,7 @@ static void draw_frame_row(uint8_t *modules, unsigned y, size_t cm_count, bool w
     for (size_t i = 0; i <= cm_count; i++)
         draw_bits(modules + i * TAPEMARK_CM_PITCH_MODULES, finder_rows[y], FINDER_MODULES);
     if (with_bars)
-        draw_bits(modules + cm_count * TAPEMARK_CM_PITCH_MODULES + FINDER_MODULES, right_bars,
-                  TAPEMARK_BAR_MODULES);
+        draw_bits(modules + cm_count * TAPEMARK_CM_PITCH_MODULES + FINDER_MODULES, right_bars, TAPEMARK_BAR_MODULES);
 }
 
 size_t tapemark_segment_width_modules(size_t cm_count, bool with_bars)
@@ -251,8 +247,8 @@ size_t tapemark_segment_width_modules(size_t cm_count, bool with_bars)
     return cm_count * TAPEMARK_CM_PITCH_MODULES + FINDER_MODULES + (with_bars ? 2 * TAPEMARK_BAR_MODULES : 0);
 }
 
-tapemark_status tapemark_segment_draw(const int32_t *ids, size_t cm_count, bool with_bars,
-                                      uint8_t *modules, size_t modules_size)
+tapemark_status tapemark_segment_draw(const int32_t *ids, size_t cm_count, bool with_bars, uint8_t *modules,
+                                      size_t modules_size)
 {
     size_t width = tapemark_segment_width_modules(cm_count, with_bars);
     if (ids == NULL || modules == NULL || width == 0)

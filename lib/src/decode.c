@@ -1,4 +1,5 @@
 /* The way of a frame: tiles, scan lines, finder patterns, tapes, segments. */
+#include "far.h"
 #include "real.h"
 #include "scan.h"
 #include "segment.h"
@@ -22,8 +23,14 @@ enum { HIT_WORK = 8 };
 static const float lone_score = 0.6f;
 
 typedef struct workspace {
-    tmi_tape tape;
-    tmi_segment segment;
+    tmi_strokes strokes;
+    union {
+        struct {
+            tmi_tape tape;
+            tmi_segment segment;
+        };
+        tmi_far far; /* once the tape is done with */
+    };
 } workspace;
 
 /* The fixed part and what aligning it may cost. */
@@ -52,6 +59,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 
 typedef struct seeker {
     tmi_tape *tape;
+    tmi_strokes *strokes;
     bool vertical;
 } seeker;
 
@@ -89,16 +97,25 @@ static tmi_scan row_of(const tmi_view *view, const tmi_tiles *tiles, int32_t y)
                       tiles->swing + tile * tiles->pitch,
                       1,
                       tiles->row_bits + tile * tiles->row_words,
-                      tiles->row_words};
+                      tiles->row_words,
+                      NULL,
+                      false};
 }
 
 static tmi_scan column_of(const tmi_view *view, const tmi_tiles *tiles, int32_t x)
 {
     const int32_t tile = x / TAPEMARK_TILE_PX;
-    return (tmi_scan){
-        view->pixels + x,   view->stride,        view->height, x,
-        view->invert,       tiles->swing + tile, tiles->pitch, tiles->column_bits + tile * tiles->column_words,
-        tiles->column_words};
+    return (tmi_scan){view->pixels + x,
+                      view->stride,
+                      view->height,
+                      x,
+                      view->invert,
+                      tiles->swing + tile,
+                      tiles->pitch,
+                      tiles->column_bits + tile * tiles->column_words,
+                      tiles->column_words,
+                      NULL,
+                      true};
 }
 
 /* The least power of two that is not below `count`. */
@@ -126,15 +143,17 @@ static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)
     const int32_t line = 1 + LINE_SPACING * index;
     if (line >= (s->vertical ? view->width : view->height))
         return;
-    const tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
+    tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
+    scan.strokes = s->strokes;
+    scan.vertical = s->vertical;
     s->tape->stats->work += (uint32_t)tmi_scan_line(&scan, try_hit, s);
 }
 
 /* Rows and columns in turn, from a coarse grid over the whole image to a fine one: where the work runs out, it has
  * been spread evenly. */
-static void scan_lines(tmi_tape *tape, const tmi_tiles *tiles, uint32_t work_max)
+static void scan_lines(tmi_tape *tape, tmi_strokes *strokes, const tmi_tiles *tiles, uint32_t work_max)
 {
-    seeker rows = {tape, false}, columns = {tape, true};
+    seeker rows = {tape, strokes, false}, columns = {tape, strokes, true};
     const int32_t row_power = power_of_two_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
     const int32_t column_power = power_of_two_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
     int32_t row = 0, column = 0;
@@ -228,7 +247,8 @@ static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config
     w->tape.stats = stats;
     w->tape.count = 0;
     w->tape.work_max = part_of(config->work_budget, TRY_PERCENT);
-    scan_lines(&w->tape, &tiles, scan_work);
+    tmi_strokes_clear(&w->strokes);
+    scan_lines(&w->tape, &w->strokes, &tiles, scan_work);
     w->tape.work_max = part_of(config->work_budget, GROW_PERCENT);
     tmi_tape_link(&w->tape);
 }
@@ -286,5 +306,8 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
         result->stats.segments++;
         kept = tmi_segment_read(&reader, &w->segment, finders, rows.goes_on);
     }
+    if (w->strokes.overflow)
+        result->stats.limits |= TAPEMARK_LIMIT_CANDIDATES;
+    tmi_far_read(&reader, &w->strokes, &w->far);
     return status_of(result);
 }

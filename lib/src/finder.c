@@ -354,7 +354,7 @@ void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *
 /* ---- Entrances ----------------------------------------------------------------------------------------- */
 
 /* Modules; a fit that moved less is done. */
-static const float settled = 0.08f;
+static const float settled = 0.1f;
 
 /* Correlation that a square told from its outline has to have before it is fitted: well below what it needs then. */
 static const float outline_score = 0.25f;

@@ -29,20 +29,18 @@ static int gray(const scan_line *scan, int32_t i)
 /* Where the signal passes `twice_level` / 2, near the place at which its rise or fall was noticed. */
 static float crossing(const scan_line *scan, int32_t from, bool rising, int twice_level)
 {
+    /* Falling is rising with all values inverted. */
+    const int flip = rising ? scan->invert : scan->invert ^ 255;
+    const int level = rising ? twice_level : 510 - twice_level;
+    const ptrdiff_t step = scan->step;
+    const uint8_t *p = scan->pixels + from * step;
     int32_t i = from;
-    if (rising) {
-        while (2 * gray(scan, i) < twice_level)
-            i++;
-        while (2 * gray(scan, i - 1) >= twice_level)
-            i--;
-    } else {
-        while (2 * gray(scan, i) > twice_level)
-            i++;
-        while (2 * gray(scan, i - 1) <= twice_level)
-            i--;
-    }
-    const float here = (float)gray(scan, i), before = (float)gray(scan, i - 1);
-    return (float)i - (here - 0.5f * (float)twice_level) / (here - before);
+    for (; 2 * (*p ^ flip) < level; p += step)
+        i++;
+    for (; 2 * (p[-step] ^ flip) >= level; p -= step)
+        i--;
+    const int here = *p ^ flip, before = p[-step] ^ flip;
+    return (float)i - 0.5f * (float)(2 * here - level) / (float)(here - before);
 }
 
 /* Five runs, dark first, in the proportion 1:1:3:1:1. The bounds are wide because a blurred ring of one pixel
@@ -86,11 +84,31 @@ static void finish_extreme(scan_line *scan, int extreme, int32_t here)
     scan->turn = here;
 }
 
-static void report(const scan_line *scan, int32_t line, tmi_hit_function on_hit, void *context)
+/* Something dark with light on both sides that differs by no more than this many times is a stroke. */
+enum { STROKE_SKEW = 3 };
+
+static void note_stroke(const scan_line *scan, const tmi_scan *line)
 {
-    tmi_hit hit;
-    if (!scan->rising && scan->edges >= EDGES && looks_like_finder(scan, &hit))
-        on_hit(context, line, &hit);
+    const int before = scan->level[EDGES - 2], dark = scan->level[EDGES - 1], after = scan->previous;
+    const int less = (before < after ? before : after) - dark, more = (before > after ? before : after) - dark;
+    if (STROKE_SKEW * less >= more)
+        tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[EDGES - 2], scan->edge[EDGES - 1],
+                        less);
+}
+
+/* Looks back from the end of something dark: notes it as a stroke, and tells whether it may be a finder's. */
+static bool looks_back(const scan_line *scan, const tmi_scan *line, tmi_hit *hit)
+{
+    if (scan->rising)
+        return false;
+    const bool found = scan->edges >= EDGES && looks_like_finder(scan, hit);
+    if (line->strokes && scan->edges >= 2) {
+        if (found)
+            tmi_strokes_add(line->strokes, line->number, line->vertical, scan->edge[0], scan->edge[EDGES - 1],
+                            (int)hit->contrast);
+        note_stroke(scan, line);
+    }
+    return found;
 }
 
 /* Goes on to the next extreme within the tile: the first pixel from `from` on that lies `least` below (while
@@ -101,7 +119,6 @@ static int32_t next_turn(const scan_line *scan, int32_t from, int32_t end, int l
     const ptrdiff_t step = scan->step;
     int most = *extreme;
     int32_t i = from;
-    /* Falling is rising with all values inverted. */
     const int flip = scan->rising ? scan->invert : scan->invert ^ 255;
     most = scan->rising ? most : 255 - most;
     for (; i < end; i++, p += step) {
@@ -120,6 +137,7 @@ int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *conte
         .pixels = line->pixels, .step = line->step, .invert = line->invert, .previous = NO_EXTREME, .rising = true};
     int32_t read = 0;
     int extreme = 0;
+    tmi_hit hit;
     for (int32_t word = 0; word < line->words; word++)
         for (uint32_t bits = line->active[word]; bits; bits &= bits - 1) {
             const int32_t tile = 32 * word + __builtin_ctz(bits), start = tile * TILE;
@@ -129,12 +147,14 @@ int32_t tmi_scan_line(const tmi_scan *line, tmi_hit_function on_hit, void *conte
             for (int32_t i = start; (i = next_turn(&scan, i, end, swing, &extreme)) < end; i++) {
                 finish_extreme(&scan, extreme, i);
                 extreme = gray(&scan, i);
-                report(&scan, line->number, on_hit, context);
+                if (looks_back(&scan, line, &hit))
+                    on_hit(context, line->number, &hit);
             }
         }
     if (scan.rising && scan.previous != NO_EXTREME) { /* the light margin of a pattern at the line's end */
         finish_extreme(&scan, extreme, line->length);
-        report(&scan, line->number, on_hit, context);
+        if (looks_back(&scan, line, &hit))
+            on_hit(context, line->number, &hit);
     }
     return read;
 }

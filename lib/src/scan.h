@@ -2,6 +2,7 @@
 #ifndef TAPEMARK_SCAN_H
 #define TAPEMARK_SCAN_H
 
+#include "stroke.h"
 #include "view.h"
 
 /* A stretch of a scan line that may run through the middle of a finder pattern. */
@@ -23,6 +24,8 @@ typedef struct tmi_scan {
     ptrdiff_t swing_step;
     const uint32_t *active; /* one bit a tile: those with a swing */
     int32_t words;
+    tmi_strokes *strokes; /* where to note what is as high as a far tape; NULL: not wanted */
+    bool vertical;        /* for those: the line is a column */
 } tmi_scan;
 
 /* Scans a line in its active tiles; across flat ones runs go on. Returns the number of pixels read. */

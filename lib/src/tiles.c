@@ -117,10 +117,8 @@ static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32
 
 /* An edge has to change by a part of what light and dark differ by around it: enough to pass over noise and
  * the ripples that compression leaves, little enough for a ring one pixel wide. */
-static uint8_t edge_swing(const uint8_t *low, const uint8_t *high, ptrdiff_t pitch, uint8_t bar)
+static uint8_t edge_swing(const uint8_t *low, const uint8_t *high, ptrdiff_t pitch)
 {
-    if (high[0] - low[0] < bar)
-        return 0;
     int darkest = 255, lightest = 0;
     for (ptrdiff_t dy = -pitch; dy <= pitch; dy += pitch)
         for (ptrdiff_t i = dy - 1; i <= dy + 1; i++) {
@@ -161,15 +159,16 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
     bool raised;
     const uint8_t bar = contrast_bar(tiles, contrast_min, active_max, &raised);
     tiles->active = 0;
-    for (int32_t y = 0; y < tiles->rows; y++)
+    for (int32_t y = 0; y < tiles->rows; y++) {
+        const uint8_t *low = tiles->low + y * tiles->pitch, *high = tiles->high + y * tiles->pitch;
         for (int32_t x = 0; x < tiles->columns; x++) {
-            const ptrdiff_t i = y * tiles->pitch + x;
-            tiles->swing[i] = edge_swing(tiles->low + i, tiles->high + i, tiles->pitch, bar);
-            if (!tiles->swing[i])
+            if (high[x] - low[x] < bar)
                 continue;
+            tiles->swing[y * tiles->pitch + x] = edge_swing(low + x, high + x, tiles->pitch);
             tiles->active++;
             tiles->row_bits[y * tiles->row_words + x / 32] |= 1u << (x % 32);
             tiles->column_bits[x * tiles->column_words + y / 32] |= 1u << (y % 32);
         }
+    }
     return raised;
 }

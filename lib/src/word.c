@@ -12,12 +12,13 @@ enum {
     CANDIDATE_WORDS = 32  /* of those words, how many get their checksum compared */
 };
 
-/* What preparing a match and scoring a word cost, in pixel reads (of some 50 instructions). */
-enum { PREPARE_WORK = 400, SCORE_WORK = 70 };
-
 /* Data cells at which less than about a fifth of a one is to be seen are no candidates: those whose change, cost
  * included, would gain less than this part of a one's energy. */
 static const float hopeless_gain = -0.9f;
+
+/* Under more blur than this, of both leaks together, what a one darkens is not told from what its neighbours do: the
+ * next best cells are candidates too, however little is to be seen there, so that no word wins for want of rivals. */
+static const float doubtful_blur = 0.36f, doubtful_gain = -1.31f;
 
 /* A one has to explain this part of its own energy to be taken for likely, when words are shortlisted. Without
  * it, words that add doubtful ones to the right word would crowd that off the list. */
@@ -30,7 +31,7 @@ static const float known_id_bonus = 0.03f;
  * one. The odds are then cut down to what is enough only where the next CM says the same id. */
 static bool is_too_blurred(const tmi_cells *cells)
 {
-    return cells->leak_along + cells->leak_across > 0.46f || real_max(cells->leak_along, cells->leak_across) > 0.28f;
+    return cells->leak_along + cells->leak_across > 0.5f || real_max(cells->leak_along, cells->leak_across) > 0.295f;
 }
 
 typedef struct candidate {
@@ -53,6 +54,13 @@ static float score_word(const tmi_evidence *e, const candidate *word)
     return tmi_evidence_correlate(e, changed, count);
 }
 
+float tmi_word_score(const tmi_evidence *e, int32_t rank)
+{
+    candidate word = {0};
+    word.count = (uint8_t)tmi_positions_of_id(rank, word.positions);
+    return score_word(e, &word);
+}
+
 /* ---- Candidates -------------------------------------------------------------------------------------- */
 
 /* The data bits of which most is there, best first, each with the squared error that it takes off.
@@ -60,9 +68,10 @@ static float score_word(const tmi_evidence *e, const candidate *word)
 static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
+    const float least = e->leak_along + e->leak_across > doubtful_blur ? doubtful_gain : hopeless_gain;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
         const float energy = tmi_evidence_energy(e, i), gain = (2 * e->amounts[i] - 1 - one_cost) * energy;
-        if (gain < hopeless_gain * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
+        if (gain < least * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
             continue;
         int at = count < CANDIDATE_CELLS ? count++ : count - 1;
         for (; at > 0 && gains[at - 1] < gain; at--) {
@@ -225,7 +234,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     shortlist list;
     tmi_evidence_gather(&e, cells);
     list_words(&e, &list, work);
-    *work += PREPARE_WORK;
+    *work += TMI_GATHER_WORK;
     contest c;
     begin_contest(&c, &e);
     float scores[CANDIDATE_WORDS];
@@ -237,7 +246,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         if (id == TMI_NO_ID || !in_reach(&c, word))
             continue;
         scores[count] = score_word(&e, word);
-        *work += SCORE_WORK;
+        *work += TMI_SCORE_WORK;
         c.best = real_max(c.best, scores[count]);
         ids[count++] = id;
     }
@@ -254,4 +263,45 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
         reading->odds = 1 + 0.15f * (reading->odds - 1);
     if (reading->id != TMI_NO_ID)
         count_cells(cells, reading);
+}
+
+/* ---- Words that others tell of --------------------------------------------------------------------------- */
+
+int32_t tmi_word_of_few_ones(const tmi_cells *cells, uint32_t *work)
+{
+    tmi_evidence e;
+    uint8_t picked[CANDIDATE_CELLS];
+    float gains[CANDIDATE_CELLS];
+    tmi_evidence_gather(&e, cells);
+    const int count = pick_positions(&e, picked, gains);
+    float best = -1;
+    int32_t rank = 0;
+    for (int i = -1; i < count; i++)
+        for (int j = -1; j < i || i + j == -2; j++) {
+            candidate word = {0};
+            if (i >= 0)
+                word.positions[word.count++] = picked[i];
+            if (j >= 0)
+                word.positions[word.count++] = picked[j];
+            const float score = word.count == 0 && e.sign < 0 ? -1 : score_word(&e, &word);
+            *work += TMI_SCORE_WORK;
+            if (score > best) {
+                best = score;
+                rank = tmi_id_of_positions(word.positions, word.count, false);
+            }
+        }
+    return rank;
+}
+
+void tmi_word_read_as(const tmi_cells *cells, const tmi_words *words, int32_t rank, tmi_reading *reading)
+{
+    tmi_evidence e;
+    tmi_evidence_gather(&e, cells);
+    *reading = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
+    if (rank < 0 || rank > TAPEMARK_MAX_ID || (rank == 0 && e.sign < 0))
+        return;
+    reading->id = e.sign < 0 ? -rank : rank;
+    reading->score = tmi_word_score(&e, rank);
+    reading->unknown = !is_known(words, reading->id);
+    count_cells(cells, reading);
 }

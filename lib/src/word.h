@@ -31,4 +31,18 @@ typedef struct tmi_words {
  * tmi_blank_score() has adjusted. `work` grows by what it costs, in pixel reads. */
 void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading *reading, uint32_t *work);
 
+/* What gathering evidence and scoring a word cost, in pixel reads (of some 50 instructions). */
+enum { TMI_GATHER_WORK = 400, TMI_SCORE_WORK = 70 };
+
+/* The rank of a word is its id but for the sign, which most cells tell. */
+
+/* Correlation of the cells with the word of this rank. */
+float tmi_word_score(const tmi_evidence *e, int32_t rank);
+
+/* The rank of the word of at most two ones that fits best. */
+int32_t tmi_word_of_few_ones(const tmi_cells *cells, uint32_t *work);
+
+/* How the cells read as the word of this rank, whatever else they may be; with odds of 1. */
+void tmi_word_read_as(const tmi_cells *cells, const tmi_words *words, int32_t rank, tmi_reading *reading);
+
 #endif

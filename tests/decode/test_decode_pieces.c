@@ -157,6 +157,37 @@ static void reads_a_wall_full_of_tape(void **state)
     }
 }
 
+/* Finder patterns and blocks as on a tape, between gratings of so many bars. */
+static size_t tms_between_bars(int bars)
+{
+    enum { CMS = 4, SIDE = 24, MODULES = 25 * CMS + 7, WIDTH = MODULES + 2 * SIDE, HEIGHT = TAPEMARK_HEIGHT_MODULES };
+    uint8_t modules[HEIGHT * MODULES], texels[HEIGHT * WIDTH];
+    assert_int_equal(tapemark_segment_draw(first_ids, CMS, false, modules, sizeof modules), TAPEMARK_OK);
+    for (int row = 0; row < HEIGHT; row++)
+        for (int column = 0; column < WIDTH; column++) {
+            const int at = column - SIDE, beyond = at < 0 ? -1 - at : at - MODULES;
+            const bool dark = at >= 0 && at < MODULES ? modules[row * MODULES + at] != 0
+                                                      : beyond % 2 == 1 && beyond < 2 * bars;
+            texels[row * WIDTH + column] = dark ? 22 : 203;
+        }
+    scene view = scene_default(640, 160);
+    scene_picture picture = scene_picture_of(texels, WIDTH, HEIGHT, 0.06);
+    picture.border_m = 0.02;
+    picture.border_shade = 203;
+    scene_place_picture(&view, &picture, (scene_pose){.px_per_module = 3.5, .roll_deg = 2});
+    view.pictures = &picture;
+    view.picture_count = 1;
+    return decode_scene(&view, NULL, "%d bars", bars)->result.tm_count;
+}
+
+static void gratings_are_no_bars(void **state)
+{
+    (void)state;
+    assert_int_equal(tms_between_bars(4), 1);
+    assert_int_equal(tms_between_bars(5), 0);
+    assert_int_equal(tms_between_bars(8), 0);
+}
+
 static void tapes_are_read_before_clutter(void **state)
 {
     (void)state;
@@ -186,6 +217,7 @@ int main(void)
         cmocka_unit_test(half_a_tape_is_no_wrong_id),
         cmocka_unit_test(ids_need_not_ascend),
         cmocka_unit_test(segments_without_bars_are_no_tms),
+        cmocka_unit_test(gratings_are_no_bars),
         cmocka_unit_test(tapes_are_read_before_clutter),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
