@@ -50,6 +50,10 @@ void session_command(stream_session *session, const char *name, int timeout_ms, 
 
 bool session_start(stream_session *session, const char *camera, const char *format, const char *encoding, int baud)
 {
+    /* What is still on its way from the program before is not this one's. */
+    tapemark_record record;
+    while (host_record(&session->board.line, QUIET_MS, &record))
+        continue;
     tapemark_receiver_reset(&session->board.line.receiver);
     session->packets = strcmp(encoding, "cobs") == 0;
     return machine_do(&session->board, ANSWER_MS,
