@@ -45,11 +45,11 @@ class Evaluation:
 
     def __init__(self, chosen, source, folder):
         self.chosen = chosen
-        self.library = str(chosen.build / "lib" / "libtapemark.so")
-        self.decoder = Tapemark(self.library)
+        self.decoder_path = str(chosen.build / "lib" / "libtapemark.so")
+        self.decoder = Tapemark(self.decoder_path)
         self.source = source
         self.folder = Path(folder)
-        self.bench = Bench(source, all_readers(self.library), self.decoder, folder)
+        self.bench = Bench(source, all_readers(self.decoder_path), self.decoder, folder)
 
     def systems(self):
         systems = [{"name": each.name, "label": each.label, "marker": each.marker, "version": each.version()}
@@ -63,7 +63,7 @@ class Evaluation:
         if name == "timing":
             return timing.measure(self.bench, TIMED_IMAGES)
         if name == "memory":
-            return memory.measure(self.bench, self.library)
+            return memory.measure(self.bench, self.decoder_path)
         if name == "gate":
             return gate.measure(self.source, self.decoder, self.folder)
         if name == "walk":

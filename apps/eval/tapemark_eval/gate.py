@@ -120,7 +120,7 @@ def compare(before, now):
 
 def _arguments():
     parser = argparse.ArgumentParser(prog="tapemark-eval-gate", description=__doc__.splitlines()[0])
-    parser.add_argument("--library", required=True, help="libtapemark.so")
+    parser.add_argument("--library", dest="decoder_path", required=True, help="libtapemark.so")
     parser.add_argument("--scenes", required=True, help="tapemark-eval-scenes")
     parser.add_argument("--report", type=Path, required=True, help="evaluation.json, with the counts of before")
     parser.add_argument("--update", action="store_true", help="write the counts of now into it instead")
@@ -131,7 +131,7 @@ def _arguments():
 
 def main():
     chosen = _arguments()
-    decoder = Tapemark(chosen.library)
+    decoder = Tapemark(chosen.decoder_path)
     before = None if chosen.update else _counts_of(chosen.report)
     with tempfile.TemporaryDirectory() as folder, SceneSource(chosen.scenes) as source:
         now = measure(source, decoder, folder, chosen.extra_words.split())
