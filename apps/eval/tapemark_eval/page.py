@@ -168,4 +168,7 @@ def markdown(report):
         lines += walk_page.walk_lines(report["walk"], labels)
     if "no-tape" in report:
         lines += walk_page.no_tape_lines(report["no-tape"], labels)
+    else:
+        lines += ["", "## Frames without a tape", "",
+                  "Not measured with this decoder as yet; see the page of apps/eval for what is known to be misread."]
     return "\n".join(lines).rstrip("\n") + "\n"
