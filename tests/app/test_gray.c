@@ -219,7 +219,10 @@ static void layouts_are_understood(void **state)
         {"YU12:5x3", {PIXEL_YU12, 5, 3, 5}, 15 + 2 * 2 * 3},
         {"YU12:4x2:8", {PIXEL_YU12, 4, 2, 8}, 16 + 2 * 4},
         {"SGBRG10P:8x1:16", {PIXEL_SGBRG10P, 8, 1, 16}, 16},
-        {"SBGGR8:65535x65535", {PIXEL_SBGGR8, 65535, 65535, 65535}, 65535ull * 65535},
+        {"SBGGR8:65535x32767", {PIXEL_SBGGR8, 65535, 32767, 65535}, 2147385345},
+#if SIZE_MAX > UINT32_MAX
+        {"SBGGR8:65535x65535", {PIXEL_SBGGR8, 65535, 65535, 65535}, 4294836225},
+#endif
     };
     (void)state;
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
@@ -256,6 +259,9 @@ static void wrong_layouts_are_refused(void **state)
         {"GREY:640x480:", "from 640 to"},
         {"GREY:640x480:99999999", "from 640 to"},
         {"GREY:640x480:700b", "from 640 to"},
+#if SIZE_MAX <= UINT32_MAX
+        {"GREY:65535x32769", "too large for memory"},
+#endif
     };
     (void)state;
     for (size_t i = 0; i < COUNT_OF(cases); i++) {
