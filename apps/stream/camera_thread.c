@@ -278,10 +278,11 @@ void camera_thread_release(camera_thread *self)
 
 /* ---- Reaching the device from outside ------------------------------------------------------------------------ */
 
-static struct timespec time_from_now(clockid_t clock, int64_t patience_ns)
+/* Of the clock that nobody sets. */
+static struct timespec time_from_now(int64_t patience_ns)
 {
     struct timespec now;
-    clock_gettime(clock, &now);
+    clock_gettime(CLOCK_MONOTONIC, &now);
     int64_t then_ns = (int64_t)now.tv_sec * 1000000000 + now.tv_nsec + patience_ns;
     return (struct timespec){(time_t)(then_ns / 1000000000), (long)(then_ns % 1000000000)};
 }
@@ -289,8 +290,8 @@ static struct timespec time_from_now(clockid_t clock, int64_t patience_ns)
 /* On success, let_go() has to follow. */
 static bool reach(camera_thread *self, error_text *error)
 {
-    struct timespec deadline = time_from_now(CLOCK_REALTIME, reach_patience_ns);
-    if (pthread_mutex_timedlock(&self->reach, &deadline) != 0) {
+    struct timespec deadline = time_from_now(reach_patience_ns);
+    if (pthread_mutex_clocklock(&self->reach, CLOCK_MONOTONIC, &deadline) != 0) {
         error_text_set(error, "does not answer");
         return false;
     }
@@ -370,7 +371,7 @@ bool camera_thread_has_ended(camera_thread *self)
 /* With the mutex held. */
 static bool wait_until_ended(camera_thread *self, int64_t patience_ns)
 {
-    struct timespec deadline = time_from_now(CLOCK_MONOTONIC, patience_ns);
+    struct timespec deadline = time_from_now(patience_ns);
     while (!self->ended && pthread_cond_timedwait(&self->changed, &self->mutex, &deadline) == 0)
         continue;
     return self->ended;

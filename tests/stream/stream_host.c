@@ -156,6 +156,7 @@ void host_close(stream_host *host)
 static bool next_in_hand(stream_host *host, tapemark_record *record)
 {
     while (host->taken < host->size) {
+        host->taken_bytes++;
         if (tapemark_receiver_push(&host->receiver, host->bytes[host->taken++]) != TAPEMARK_RECORD_NONE) {
             *record = host->receiver.record;
             return true;
@@ -172,11 +173,11 @@ bool host_record(stream_host *host, int timeout_ms, tapemark_record *record)
         struct pollfd wait = {.fd = host->line, .events = POLLIN};
         if (left_ms <= 0 || poll(&wait, 1, (int)left_ms) < 0)
             return false;
-        const ssize_t count = read(host->line, host->bytes, sizeof host->bytes);
+        const ssize_t count = read(host->line, host->bytes, HOST_READ_BYTES);
         host->taken = 0;
         host->size = count > 0 ? (size_t)count : 0;
         if (host->on_bytes != NULL)
-            host->on_bytes(host->context, host->bytes, host->size);
+            host->size = host->on_bytes(host->context, host->bytes, host->size);
         host->record_ns = host_clock_ns();
         if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR))
             host_sleep_ms(2);

@@ -9,7 +9,7 @@
 
 #include "tapemark_receiver.h"
 
-enum { HOST_ARGUMENTS_MAX = 40, HOST_SAID_BYTES = 8192 };
+enum { HOST_ARGUMENTS_MAX = 40, HOST_SAID_BYTES = 8192, HOST_READ_BYTES = 512 };
 
 typedef struct stream_host {
     pid_t program;
@@ -21,11 +21,13 @@ typedef struct stream_host {
     char said[HOST_SAID_BYTES];  /* on standard error so far */
     size_t said_size;
     tapemark_receiver receiver;
-    uint8_t bytes[512];
+    uint8_t bytes[2 * HOST_READ_BYTES];
     size_t size, taken;
+    uint64_t taken_bytes;    /* by the receiver, so far */
     int64_t record_ns;       /* when the last record was complete */
-    /* Gets what came before it is looked at; may be NULL. */
-    void (*on_bytes)(void *context, uint8_t *bytes, size_t size);
+    /* Gets what came before it is looked at, and may change it: answers how many bytes it is then, up to twice as
+     * many. May be NULL. */
+    size_t (*on_bytes)(void *context, uint8_t *bytes, size_t size);
     void *context;
 } stream_host;
 

@@ -1,195 +1,108 @@
 /*
- * Usage: stream_soak PROGRAM WALK.y4m WALK.jsonl [FRAMES]
- * Runs tapemark-stream flat out over a recording that begins again and again, until so many frames went by (100000
- * unless told), and does to it what happens in weeks, each at least twice: the line stalls, the port is pulled out
- * and comes back, rubbish comes as commands, settings are read again; and bytes are damaged on the way all the time.
- * Every record that the receiver takes is held against the truth; memory and descriptors have to stay as they are.
+ * Usage: stream_soak PROGRAM RECORDING TRUTH.jsonl [FRAMES [LOG.csv]]
+ * Runs tapemark-stream flat out over a recording (or a directory of them) that begins again and again, until so many
+ * frames went by (100000 unless told), and does to it what happens in weeks, each at least twice: the line stalls, is
+ * read at another rate, comes back as an echo, the port is pulled out and comes back, rubbish comes as commands, settings
+ * are read again; and bytes are damaged on the way all the time. Every record that the receiver takes is held against
+ * the truth, each frame has to come, to be told of as dropped, or to be one that harm was done to; memory and
+ * descriptors have to stay as they are.
  */
-#include <dirent.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
-#include "stream_host.h"
-#include "walk_check.h"
+#include "soak_harm.h"
+#include "soak_log.h"
 
-enum { SOON_MS = 10000, FAULT_EVERY_MS = 700, HARMS = 4, DAMAGE_EVERY_BYTES = 4000, WARM_UP_FRAMES = 500 };
+enum { SOON_MS = 10000, FAULT_EVERY_MS = 700, WARM_UP_FRAMES = 500, LINES = 250 };
 
 typedef struct soak {
     stream_host host;
+    truth walk;
     walk_check check;
-    char link_path[64];
-    uint32_t dice;
-    uint64_t damaged_bytes;
-    unsigned harms, stalls, unplugs, reloads, rubbish;
-    long memory_kib;       /* after the warm-up */
-    int descriptors;       /* the most during the warm-up */
+    soak_harm harm;
+    soak_log log;
+    bool warm;
+    long memory_kib;       /* the most during the warm-up; likewise below */
+    int descriptors;
 } soak;
 
-static uint32_t roll(soak *self)
-{
-    self->dice = self->dice * 1664525 + 1013904223;
-    return self->dice >> 12;
-}
-
-/* ---- What the program takes ---------------------------------------------------------------------------------- */
-
-static long memory_kib(pid_t program)
-{
-    char path[64], line[200];
-    long kib = -1;
-    snprintf(path, sizeof path, "/proc/%d/status", (int)program);
-    FILE *file = fopen(path, "r");
-    while (file != NULL && fgets(line, sizeof line, file) != NULL)
-        sscanf(line, "VmRSS: %ld kB", &kib);
-    if (file != NULL)
-        fclose(file);
-    return kib;
-}
-
-static int count_descriptors(pid_t program)
-{
-    char path[64];
-    int count = 0;
-    snprintf(path, sizeof path, "/proc/%d/fd", (int)program);
-    DIR *folder = opendir(path);
-    while (folder != NULL && readdir(folder) != NULL)
-        count++;
-    if (folder != NULL)
-        closedir(folder);
-    return count;
-}
-
-/* ---- Faults -------------------------------------------------------------------------------------------------- */
-
-/* Up to eight bits in a row, which a CRC of 16 bits always notices. */
-static void damage(void *context, uint8_t *bytes, size_t size)
-{
-    soak *self = context;
-    if (size == 0 || roll(self) % DAMAGE_EVERY_BYTES >= size)
-        return;
-    bytes[roll(self) % size] ^= (uint8_t)(1 + roll(self) % 255);
-    self->damaged_bytes++;
-}
-
-static void stall(soak *self)
-{
-    self->stalls++;
-    host_sleep_ms(1200);
-    host_forget(&self->host);
-    self->check.expected = 0;
-}
-
-static bool point_link(const soak *self, const char *device)
-{
-    return symlink(device, self->link_path) == 0;
-}
-
-static bool unplug(soak *self)
-{
-    stream_host fresh;
-    self->unplugs++;
-    unlink(self->link_path);
-    host_unplug(&self->host);
-    host_sleep_ms(300);
-    if (!host_open(&fresh) || !point_link(self, fresh.device_path))
-        return false;
-    self->host.line = fresh.line;
-    self->host.device = fresh.device;
-    self->host.size = self->host.taken = 0;
-    self->check.expected = 0;
-    return true;
-}
-
-static void send_rubbish(soak *self)
-{
-    char bytes[64];
-    for (size_t i = 0; i < sizeof bytes; i++)
-        bytes[i] = (char)roll(self);
-    self->rubbish++;
-    if (write(self->host.line, bytes, sizeof bytes) < 0)
-        return;
-    host_command(&self->host, (uint16_t)roll(self), "SET", "markers", "none of your business");
-}
-
-static bool do_harm(soak *self)
-{
-    switch (self->harms++ % HARMS) {
-    case 0:
-        self->reloads++;
-        return kill(self->host.program, SIGHUP) == 0;
-    case 1:
-        stall(self);
-        return true;
-    case 2:
-        return unplug(self);
-    default:
-        send_rubbish(self);
-        return true;
-    }
-}
-
-/* ---- The run ------------------------------------------------------------------------------------------------- */
-
-static bool begin(soak *self, char **arguments, const truth *walk)
+static bool begin(soak *self, char **arguments)
 {
     char camera_name[600], serial[100];
-    self->dice = 1;
-    self->check.walk = walk;
-    snprintf(self->link_path, sizeof self->link_path, "/tmp/tapemark-soak-port-%d", (int)getpid());
+    self->check.walk = &self->walk;
+    self->harm = (soak_harm){.host = &self->host, .check = &self->check};
+    if (!soak_harm_begin(&self->harm))
+        return false;
     snprintf(camera_name, sizeof camera_name, "file:%s@max", arguments[2]);
-    snprintf(serial, sizeof serial, "%s:2000000", self->link_path);
+    snprintf(serial, sizeof serial, "%s:2000000", self->harm.link_path);
     const char *const words[] = {"--camera", camera_name, "--repeat", "yes", "--serial", serial, "--encoding", "cobs",
                                  NULL};
-    if (!host_open(&self->host) || !point_link(self, self->host.device_path))
-        return false;
-    self->host.on_bytes = damage;
-    self->host.context = self;
     return host_start(&self->host, arguments[1], words);
 }
 
-/* A recording that begins again, or settings that are read, hold fewer or more for a moment: the most counts. */
+static void tell_unexplained(const soak *self, const tapemark_frame_record *head, uint16_t seq_before)
+{
+    const soak_harm *harm = &self->harm;
+    printf("unexplained: after %u came %u, which tells of %u dropped; %d ms after harm %u (%s), %llu bytes after damage "
+           "%llu\n", seq_before, head->seq, head->dropped, (int)((host_clock_ns() - harm->last_ns) / 1000000),
+           harm->count, harm->count > 0 ? soak_harm_names[(harm->count - 1) % SOAK_HARMS] : "none",
+           (unsigned long long)(self->host.taken_bytes - harm->damaged_at),
+           (unsigned long long)harm->damaged_bytes);
+}
+
+/* The next record, looked at. */
+static bool take_record(soak *self)
+{
+    tapemark_record record;
+    const uint64_t unexplained = self->check.unexplained;
+    const uint16_t seq_before = self->check.seq;
+    if (!host_record(&self->host, SOON_MS, &record)) {
+        printf("no record came; the program said: %s\n", self->host.said);
+        return false;
+    }
+    soak_harm_note(&self->harm);
+    walk_check_record(&self->check, &record);
+    if (self->check.unexplained > unexplained)
+        tell_unexplained(self, &record.as.frame, seq_before);
+    soak_log_record(&self->log, &record, self->host.program);
+    return true;
+}
+
+/* A recording that begins again, or settings that are read, hold fewer or more for a moment: the most counts. Each
+ * recording of a directory has its own. */
 static void warm_up(soak *self)
 {
-    const int descriptors = count_descriptors(self->host.program);
+    const int descriptors = soak_descriptors(self->host.program);
+    const long kib = soak_memory_kib(self->host.program);
     if (descriptors > self->descriptors)
         self->descriptors = descriptors;
-    if (self->check.position >= WARM_UP_FRAMES)
-        self->memory_kib = memory_kib(self->host.program);
+    if (kib > self->memory_kib)
+        self->memory_kib = kib;
+    self->warm = self->check.position >= WARM_UP_FRAMES && self->check.position >= 2 * self->walk.count;
 }
 
 /* The last harm may still be on its way to be mended. */
 static int settled_descriptors(soak *self)
 {
-    tapemark_record record;
     const int64_t end_ns = host_clock_ns() + SOON_MS * INT64_C(1000000);
-    int descriptors = count_descriptors(self->host.program);
-    while (descriptors != self->descriptors && host_clock_ns() < end_ns) {
-        if (!host_record(&self->host, SOON_MS, &record))
-            break;
-        walk_check_record(&self->check, &record);
-        descriptors = count_descriptors(self->host.program);
-    }
+    int descriptors = soak_descriptors(self->host.program);
+    while (descriptors != self->descriptors && host_clock_ns() < end_ns && take_record(self))
+        descriptors = soak_descriptors(self->host.program);
     return descriptors;
 }
 
 /* Frames that went by, sent or not, as their numbers tell. */
 static bool run(soak *self, uint64_t frames)
 {
-    tapemark_record record;
     int64_t next_fault_ns = host_clock_ns() + FAULT_EVERY_MS * INT64_C(1000000);
-    while (self->check.position < frames || self->harms < 2 * HARMS) {
-        if (!host_record(&self->host, SOON_MS, &record)) {
-            printf("no record came; the program said: %s\n", self->host.said);
+    while (self->check.position < frames || self->harm.count < 2 * SOAK_HARMS) {
+        if (!take_record(self))
             return false;
-        }
-        walk_check_record(&self->check, &record);
-        if (self->memory_kib == 0)
+        if (!self->warm)
             warm_up(self);
-        if (self->memory_kib > 0 && host_clock_ns() >= next_fault_ns) {
-            if (!do_harm(self))
+        if (self->warm && host_clock_ns() >= next_fault_ns) {
+            if (!soak_harm_do(&self->harm, self->host.program))
                 return false;
             next_fault_ns = host_clock_ns() + FAULT_EVERY_MS * INT64_C(1000000);
         }
@@ -208,43 +121,66 @@ static bool memory_counts(void)
 #endif
 }
 
+static void tell(const soak *self, long memory_after_kib, int descriptors_after)
+{
+    const walk_check *check = &self->check;
+    printf("%llu frames: %llu sent with %llu CMs and %llu TMs, %llu told of as dropped, %llu spoiled by harm, "
+           "%llu unexplained; %llu wrong records, %llu misplaced; %llu incomplete frames for %llu damaged bytes",
+           (unsigned long long)check->position, (unsigned long long)check->frames, (unsigned long long)check->cms,
+           (unsigned long long)check->tms, (unsigned long long)check->dropped, (unsigned long long)check->spoiled,
+           (unsigned long long)check->unexplained, (unsigned long long)check->wrong,
+           (unsigned long long)check->misplaced, (unsigned long long)check->incomplete,
+           (unsigned long long)self->harm.damaged_bytes);
+    for (int i = 0; i < SOAK_HARMS; i++)
+        printf("%s %u %s", i == 0 ? ";" : ",", self->harm.done[i], soak_harm_names[i]);
+    printf("; memory %ld to %ld KiB, descriptors %d to %d\n", self->memory_kib, memory_after_kib, self->descriptors,
+           descriptors_after);
+    if (check->wrong > 0)
+        printf("the first wrong one: %s\n", check->complaint);
+}
+
 static bool judge(const soak *self, long memory_after_kib, int descriptors_after)
 {
     const long growth_max_kib = 512;
     const walk_check *check = &self->check;
-    printf("%llu frames, %llu of them sent with %llu CMs and %llu TMs; %llu wrong records; %llu incomplete frames "
-           "for %llu damaged bytes; %u stalls, %u unplugged ports, %u times rubbish, %u reloads; "
-           "memory %ld to %ld KiB, descriptors %d to %d\n",
-           (unsigned long long)check->position, (unsigned long long)check->frames, (unsigned long long)check->cms,
-           (unsigned long long)check->tms, (unsigned long long)check->wrong, (unsigned long long)check->incomplete,
-           (unsigned long long)self->damaged_bytes, self->stalls, self->unplugs, self->rubbish, self->reloads,
-           self->memory_kib, memory_after_kib, self->descriptors, descriptors_after);
-    if (check->wrong > 0)
-        printf("the first wrong one: %s\n", check->complaint);
-    return check->wrong == 0 && check->cms > check->frames && check->incomplete <= self->damaged_bytes &&
+    return check->wrong == 0 && check->misplaced <= check->cms / 100 && check->unexplained == 0 &&
+           check->cms > check->frames &&
+           check->incomplete <= self->harm.damaged_bytes + self->harm.count &&
            descriptors_after <= self->descriptors &&
            (!memory_counts() || memory_after_kib - self->memory_kib <= growth_max_kib);
 }
 
+static bool open_log(soak *self, const char *path, uint64_t frames)
+{
+    self->log = (soak_log){.file = fopen(path, "w"), .frames_a_line = frames / LINES + 1,
+                           .start_ns = host_clock_ns(), .harm = &self->harm};
+    soak_log_begin(&self->log);
+    return self->log.file != NULL;
+}
+
 int main(int argc, char **argv)
 {
-    static truth walk;
     static soak self;
     if (argc < 4) {
-        fprintf(stderr, "stream_soak: expected PROGRAM WALK.y4m WALK.jsonl [FRAMES]\n");
+        fprintf(stderr, "stream_soak: expected PROGRAM RECORDING TRUTH.jsonl [FRAMES [LOG.csv]]\n");
         return 2;
     }
     const uint64_t frames = argc > 4 ? strtoull(argv[4], NULL, 10) : 100000;
-    if (!truth_read(argv[3], &walk) || walk.count != WALK_FRAMES || !begin(&self, argv, &walk)) {
+    if (!truth_read(argv[3], &self.walk) || (argc > 5 && !open_log(&self, argv[5], frames)) || !begin(&self, argv)) {
         fprintf(stderr, "stream_soak: cannot begin\n");
         return 1;
     }
     bool good = run(&self, frames);
     const int descriptors = settled_descriptors(&self);
-    good = judge(&self, memory_kib(self.host.program), descriptors) && good;
+    const long kib = soak_memory_kib(self.host.program);
+    tell(&self, kib, descriptors);
+    good = judge(&self, kib, descriptors) && good;
     kill(self.host.program, SIGTERM);
     good = host_wait(&self.host, SOON_MS) == 0 && good;
     host_close(&self.host);
-    unlink(self.link_path);
+    soak_harm_end(&self.harm);
+    if (self.log.file != NULL && fclose(self.log.file) != 0)
+        good = false;
+    truth_release(&self.walk);
     return good ? 0 : 1;
 }

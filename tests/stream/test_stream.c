@@ -22,7 +22,9 @@ static void assert_walk_is_right(const walk_check *check)
 {
     if (check->wrong > 0)
         fail_msg("%d wrong records; the first: %s", (int)check->wrong, check->complaint);
+    assert_int_equal(check->misplaced, 0);
     assert_int_equal(check->incomplete, 0);
+    assert_int_equal(check->unexplained + check->spoiled, 0);
     assert_int_equal(check->dropped, 0);
     assert_int_equal(check->position, WALK_FRAMES);
     assert_true(check->cms >= 90);

@@ -191,7 +191,7 @@ static void recording_tells_the_same(void **state)
     while ((check.frames < WALK_FRAMES || check.expected > 0) && host_record(&host, SOON_MS, &record))
         walk_check_record(&check, &record);
     assert_int_equal(check.position, WALK_FRAMES);
-    assert_int_equal(check.wrong, 0);
+    assert_int_equal(check.wrong + check.misplaced, 0);
     /* A busy machine may leave out a frame or two. */
     assert_true(check.cms >= 60);
     unlink(path);

@@ -18,7 +18,7 @@ static void add_segment(const picture_segment *segment, true_frame *output)
         const double start_modules =
             (segment->bars ? TAPEMARK_BAR_MODULES : 0) + (double)i * TAPEMARK_CM_PITCH_MODULES;
         output->cms[output->cm_count++] = (true_cm){
-            segment->ids[i], middle_px(segment->left_px, start_modules + cm_middle_modules), y_px, true};
+            segment->ids[i], middle_px(segment->left_px, start_modules + cm_middle_modules), y_px};
         code = code << 1 | (segment->ids[i] >= 0 ? 1u : 0u);
     }
     if (!segment->bars)

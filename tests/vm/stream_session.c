@@ -132,7 +132,7 @@ static uint32_t roll(stream_session *session)
 }
 
 /* Up to eight bits in a row, which a CRC of 16 bits always notices. */
-static void damage(void *context, uint8_t *bytes, size_t size)
+static size_t damage(void *context, uint8_t *bytes, size_t size)
 {
     stream_session *session = context;
     for (size_t i = 0; i < size; i++) {
@@ -141,6 +141,7 @@ static void damage(void *context, uint8_t *bytes, size_t size)
         bytes[i] ^= (uint8_t)(1 + roll(session) % 255);
         session->damaged_bytes++;
     }
+    return size;
 }
 
 void session_damage(stream_session *session, bool damaging)
