@@ -27,9 +27,19 @@ static int64_t ms_from_now(int time_ms)
 
 /* ---- On the way from the program ----------------------------------------------------------------------------- */
 
+void soak_harm_note(soak_harm *self)
+{
+    if (!self->damage_is_due || self->host->taken_bytes <= self->damaged_at)
+        return;
+    self->check->harmed = true;
+    self->damage_is_due = false;
+}
+
 /* Up to eight bits in a row, which a CRC of 16 bits always notices. */
 static void damage(soak_harm *self, uint8_t *bytes, size_t size)
 {
+    /* What came before these bytes was taken. */
+    soak_harm_note(self);
     if (roll(self) % DAMAGE_EVERY_BYTES >= size)
         return;
     const size_t at = roll(self) % size;
@@ -59,14 +69,6 @@ static size_t pass(void *context, uint8_t *bytes, size_t size)
         return misread(self, bytes, size);
     damage(self, bytes, size);
     return size;
-}
-
-void soak_harm_note(soak_harm *self)
-{
-    if (!self->damage_is_due || self->host->taken_bytes <= self->damaged_at)
-        return;
-    self->check->harmed = true;
-    self->damage_is_due = false;
 }
 
 /* ---- Harm ---------------------------------------------------------------------------------------------------- */
