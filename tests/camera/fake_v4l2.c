@@ -298,8 +298,11 @@ static int get_extended(struct v4l2_ext_controls *controls)
 
 /* ---- Buffers --------------------------------------------------------------------------------------------- */
 
+/* Its memory is as small as what the tests need. */
 static int request_buffers(struct v4l2_requestbuffers *request)
 {
+    if (fake.picture.sizeimage > FAKE_BUFFER_BYTES || fake.buffer_bytes > FAKE_BUFFER_BYTES)
+        return fail_with(ENOMEM);
     if (request->count > fake.buffers)
         request->count = fake.buffers;
     fake.allocated = (int)request->count;
@@ -450,7 +453,7 @@ void *__wrap_mmap64(void *address, size_t size, int protection, int flags, int d
 
 int __wrap_munmap(void *address, size_t size)
 {
-    if ((uint8_t *)address < memory[0] || (uint8_t *)address >= memory[0] + sizeof memory)
+    if ((uint8_t *)address < (uint8_t *)memory || (uint8_t *)address >= (uint8_t *)(memory + FAKE_BUFFERS))
         return __real_munmap(address, size);
     fake.mapped--;
     return 0;
