@@ -76,7 +76,7 @@ size_t frame_layout_size_bytes(const frame_layout *layout)
         bytes += (stride + 1) / 2 * 2 * chroma_rows;
     else if (info->chroma == CHROMA_YU12)
         bytes += (stride + 1) / 2 * chroma_rows * 2;
-    return bytes <= PTRDIFF_MAX ? (size_t)bytes : 0;
+    return bytes <= FRAME_BYTES_MAX ? (size_t)bytes : 0;
 }
 
 static bool find_format(const char *name, size_t length, pixel_format *format)
@@ -143,7 +143,7 @@ bool frame_layout_parse(const char *text, frame_layout *layout, error_text *erro
     }
     layout->stride_bytes = stride;
     if (frame_layout_size_bytes(layout) == 0) {
-        error_text_set(error, "a frame of %s is too large for memory", text);
+        error_text_set(error, "a frame of %.80s is too large: at most %d MiB are possible", text, FRAME_BYTES_MAX >> 20);
         return false;
     }
     return true;

@@ -15,8 +15,9 @@
 extern "C" {
 #endif
 
-/* The largest width and height of a frame, in px. */
-enum { FRAME_SIDE_MAX_PX = 65535 };
+/* The largest width and height of a frame, in px, and the most bytes that one takes: more is a mistake in a header or
+ * in a layout, and would take all memory there is. */
+enum { FRAME_SIDE_MAX_PX = 65535, FRAME_BYTES_MAX = 1 << 30 };
 
 /* Named as Video4Linux names them. Only the luma is used of those with colour. */
 typedef enum pixel_format {
@@ -77,7 +78,7 @@ typedef struct frame_layout {
 size_t frame_layout_least_stride(pixel_format format, int32_t width_px);
 
 /* Bytes of a whole frame, chroma planes included; 0 when a side is outside 1 to FRAME_SIDE_MAX_PX, the stride is
- * shorter than a row, or the frame is larger than memory could ever be. */
+ * shorter than a row, or they are more than FRAME_BYTES_MAX. */
 size_t frame_layout_size_bytes(const frame_layout *layout);
 
 /* Reads "FORMAT:WIDTHxHEIGHT" or "FORMAT:WIDTHxHEIGHT:STRIDE", for instance "Y10P:640x480:832". */

@@ -79,6 +79,11 @@ static bool read_header(pgm_file *file, pgm_header *header, error_text *error)
                        (unsigned long long)file->frame_count, FRAME_SIDE_MAX_PX);
         return false;
     }
+    if ((uint64_t)width * height > FRAME_BYTES_MAX) {
+        error_text_set(error, "frame %llu, of %u x %u px, is too large: at most %d MiB are possible",
+                       (unsigned long long)file->frame_count, width, height, FRAME_BYTES_MAX >> 20);
+        return false;
+    }
     if (maxval < 1 || maxval > 65535) {
         error_text_set(error, "the PGM header of frame %llu has a maximum value outside 1 to 65535",
                        (unsigned long long)file->frame_count);

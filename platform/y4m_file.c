@@ -147,7 +147,8 @@ static bool read_header(y4m_file *file, error_text *error)
     size_t sample_bytes = layout->format == PIXEL_GREY ? 1 : 2;
     layout->stride_bytes = (size_t)layout->width_px * sample_bytes;
     if (frame_layout_size_bytes(layout) == 0) {
-        error_text_set(error, "frames of %d x %d px are too large for memory", layout->width_px, layout->height_px);
+        error_text_set(error, "frames of %d x %d px are too large: at most %d MiB are possible", layout->width_px,
+                       layout->height_px, FRAME_BYTES_MAX >> 20);
         return false;
     }
     file->chroma_bytes = halve(layout->width_px, scheme->width_halvings) *

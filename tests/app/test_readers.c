@@ -169,7 +169,8 @@ static void wrong_pgm_headers(void **state)
     expect_content(LITERAL("P5 -3 2 255\n123456"), NULL, NULL, 0, "header of frame 0 is damaged");
     expect_content(LITERAL("P5 3 2 255x123456"), NULL, NULL, 0, "header of frame 0 is damaged");
     /* Four gigabytes are claimed and three bytes are there. */
-    expect_content(LITERAL("P5 65535 65535 255\nabc"), NULL, NULL, 0, "needs 4294836225 bytes, and 3 are left");
+    expect_content(LITERAL("P5 65535 16384 255\nabc"), NULL, NULL, 0, "needs 1073725440 bytes, and 3 are left");
+    expect_content(LITERAL("P5 65535 65535 255\nabc"), NULL, NULL, 0, "65535 x 65535 px, is too large: at most 1024");
 }
 
 /* ---- Y4M ----------------------------------------------------------------------------------------------------- */
@@ -283,6 +284,7 @@ static void y4m_that_cannot_be_read(void **state)
     expect_refusal(endless, sizeof endless, NULL, "header is damaged");
     expect_content(LITERAL("YUV4MPEG2 W2 H2\nFRAMED\nabcduv"), NULL, NULL, 0, "header of frame 0 is damaged");
     expect_content(LITERAL("YUV4MPEG2 W65535 H16384\nFRAME\nabcduv"), NULL, NULL, 0, "cut short: frame 0 needs");
+    expect_refusal(LITERAL("YUV4MPEG2 W65535 H65535\nFRAME\nabcduv"), NULL, "too large: at most 1024 MiB");
 }
 
 /* ---- Headerless captures ------------------------------------------------------------------------------------- */
@@ -326,12 +328,12 @@ static void raw_cut_anywhere(void **state)
 
 static void raw_of_a_wrong_size(void **state)
 {
-    static const frame_layout layout = {PIXEL_GREY, 4, 1, 4}, huge = {PIXEL_GREY, 65535, 32767, 65535};
+    static const frame_layout layout = {PIXEL_GREY, 4, 1, 4}, huge = {PIXEL_GREY, 65535, 16384, 65535};
     const expected_frame frames[] = {{4, 1, (const uint8_t *)"abcd"}};
     (void)state;
     expect_content(LITERAL("abcdef"), &layout, frames, 1, "2 bytes are left after 1 whole frames of 4 bytes");
     expect_refusal(LITERAL("abc"), &layout, "not GREY:4x1:4: 3 bytes are left after 0 whole frames");
-    expect_refusal(LITERAL("abc"), &huge, "frames of 2147385345 bytes");
+    expect_refusal(LITERAL("abc"), &huge, "frames of 1073725440 bytes");
     expect_refusal(LITERAL(""), &layout, "is empty");
 }
 
