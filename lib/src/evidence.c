@@ -31,16 +31,14 @@ void tmi_cells_turn(tmi_cells *cells)
 
 /* ---- Expected cells --------------------------------------------------------------------------------- */
 
-/* The blank word, blurred. All around the coding region there is a light module. */
-static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
+void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
 {
-    float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape */
+    float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape; above and below it is light */
     const float a = cells->leak_along, c = cells->leak_across;
     for (int row = 0; row < ROWS; row++) {
         float modules[COLUMNS + 2] = {0};
-        const uint32_t bits = dark ? 0xffffu & ~(uint32_t)tmi_light_rows[row] : tmi_dark_rows[row];
         for (int column = 0; column < COLUMNS; column++)
-            modules[column + 1] = (float)(bits >> (COLUMNS - 1 - column) & 1);
+            modules[column + 1] = (float)(rows[row] >> (COLUMNS - 1 - column) & 1);
         for (int column = 0; column < COLUMNS; column++)
             lines[row + 1][column] = (1 - 2 * a) * modules[column + 1] + a * (modules[column] + modules[column + 2]);
     }
@@ -48,6 +46,14 @@ static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
         for (int column = 0; column < COLUMNS; column++)
             out[row * COLUMNS + column] =
                 (1 - 2 * c) * lines[row + 1][column] + c * (lines[row][column] + lines[row + 2][column]);
+}
+
+static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
+{
+    uint16_t rows[ROWS];
+    for (int row = 0; row < ROWS; row++)
+        rows[row] = dark ? (uint16_t)~tmi_light_rows[row] : tmi_dark_rows[row];
+    tmi_cells_draw(cells, rows, out);
 }
 
 static tmi_bump measure_bump(const tmi_cells *cells, const float *blank, int cell)

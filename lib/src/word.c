@@ -188,12 +188,35 @@ static bool in_reach(const contest *c, const candidate *word)
     return least_error < (odds_max * unexplained(c->best) + 0.02f) * c->variance;
 }
 
-/* The cells of the word, without blur. */
+/* A lone cell of the other shade changes what is seen by the blur's peak. What is off by this part of it, and by so many
+ * times what cells are off by on the whole, is of the other shade. From 1.6 px a module on no cell of a right word is
+ * off by more than 0.6 of the peak and by that spread, and none that was flipped by less than 0.7. */
+static const float contrary_part = 0.6f, contrary_spread = 3.5f;
+
+/* Of a Gaussian, the standard deviation in mean absolute deviations: of these few outliers change little. */
+static const float deviation = 1.25f;
+
+/* How far each cell is off from the blurred word, towards the other shade; returns how far cells are on the whole. */
+static float cells_off(const tmi_cells *cells, const uint16_t rows[ROWS], float off[CELLS])
+{
+    float sum = 0;
+    tmi_cells_draw(cells, rows, off);
+    for (int i = 0; i < CELLS; i++) {
+        const bool dark = rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1;
+        off[i] = dark ? off[i] - cells->value[i] : cells->value[i] - off[i];
+        sum += real_abs(off[i]);
+    }
+    return deviation * sum / CELLS;
+}
+
 static void count_cells(const tmi_cells *cells, tmi_reading *reading)
 {
     uint16_t rows[ROWS];
+    float off[CELLS];
     tapemark_cm_grid(reading->id, rows);
+    const float spread = cells_off(cells, rows, off);
     const float peak = (1 - 2 * cells->leak_along) * (1 - 2 * cells->leak_across);
+    const float other_shade = real_max(contrary_part * peak, contrary_spread * spread);
     reading->doubtful = reading->corrected = reading->contrary = 0;
     for (int i = 0; i < CELLS; i++) {
         const float value = cells->value[i];
@@ -202,8 +225,7 @@ static void count_cells(const tmi_cells *cells, tmi_reading *reading)
             reading->doubtful++;
         if (dark != (value > 0.5f))
             reading->corrected++;
-        /* A lone cell is seen at least at `peak`: one with less than a quarter of that is something else. */
-        if (dark ? value < 0.25f * peak : value > 1 - 0.25f * peak)
+        if (off[i] > other_shade)
             reading->contrary++;
     }
 }
