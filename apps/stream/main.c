@@ -56,6 +56,7 @@ int main(int argc, char *argv[])
     bool output_is_open;
     if (!fill_descriptors(&output_is_open))
         return EXIT_BAD_INPUT;
+    messages_begin();
     switch (stream_options_read(command, &settings, &error)) {
     case OPTIONS_RUN:
         return run(command, &settings, output_is_open);

@@ -95,6 +95,39 @@ static void storm_of_hangups(void **state)
     unlink(path);
 }
 
+/* Pictures that OpenCV decodes, all the time: it is kept from talking, and the program is not. */
+static void each_reload_is_told_of(void **state)
+{
+    (void)state;
+    enum { TIMES = 60, PICTURES = 40 };
+    char folder[] = "/tmp/tapemark-stream-stills-XXXXXX", picture[100], config[100], camera[110];
+    assert_non_null(mkdtemp(folder));
+    snprintf(config, sizeof config, "%s/stream.conf", folder);
+    snprintf(camera, sizeof camera, "file:%s@max", folder);
+    for (int i = 0; i < PICTURES; i++) {
+        snprintf(picture, sizeof picture, "%s/%02d.png", folder, i);
+        assert_int_equal(symlink(STREAM_DATA "/simulated-room.png", picture), 0);
+    }
+    fill_file(config, "repeat = yes\n", 13);
+    start(ARGUMENTS("--config", config, "--camera", camera, "--serial", "LINE:921600"));
+    for (unsigned i = 0; i < TIMES; i++) {
+        expect_record(TAPEMARK_RECORD_FRAME);
+        host_sleep_ms(rand() % 9);
+        assert_int_equal(kill(host.program, SIGHUP), 0);
+        const int64_t deadline_ns = host_clock_ns() + INT64_C(1000000) * SOON_MS / 5;
+        while (host_count_said(&host, "were read again\n") < i + 1 && host_clock_ns() < deadline_ns)
+            expect_record(TAPEMARK_RECORD_FRAME);
+        assert_int_equal(host_count_said(&host, "were read again\n"), i + 1);
+    }
+    end_program();
+    for (int i = 0; i < PICTURES; i++) {
+        snprintf(picture, sizeof picture, "%s/%02d.png", folder, i);
+        unlink(picture);
+    }
+    unlink(config);
+    rmdir(folder);
+}
+
 /* ---- Inputs that hang ---------------------------------------------------------------------------------------- */
 
 static bool tells_lost_camera(const tapemark_frame_record *head)
@@ -344,6 +377,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(term_at_any_moment, open_host, close_host),
         cmocka_unit_test_setup_teardown(storm_of_hangups, open_host, close_host),
+        cmocka_unit_test_setup_teardown(each_reload_is_told_of, open_host, close_host),
         cmocka_unit_test_setup_teardown(pipe_that_falls_silent, open_host, close_host),
         cmocka_unit_test_setup_teardown(pipe_that_nobody_writes_to, open_host, close_host),
         cmocka_unit_test_setup_teardown(waiting_costs_next_to_nothing, open_host, close_host),
