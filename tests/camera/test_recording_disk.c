@@ -1,24 +1,51 @@
 /* Recordings on disks that take their time, do not answer, or are pipes; and of programs that are killed. */
 #include "recording_fixture.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdatomic.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
 
-/* The linker gives these names to write() and to what stands for it (--wrap). */
+/* The linker gives these names to write() and ftruncate() and to what stands for them (--wrap). */
 ssize_t __real_write(int descriptor, const void *bytes, size_t size);
 ssize_t __wrap_write(int descriptor, const void *bytes, size_t size);
+int __real_ftruncate64(int descriptor, off_t size);
+int __wrap_ftruncate64(int descriptor, off_t size);
 
 static atomic_int disk_pause_ms;
+static atomic_int failing_errno;   /* 0: the disk does not fail */
+static atomic_int writes_before;   /* that are still done */
+static atomic_size_t most_bytes;   /* that it takes at once; 0: all */
 
-/* A disk that takes its time; given none, it does as it is told. */
+static bool fails(void)
+{
+    if (atomic_load(&failing_errno) == 0 || atomic_fetch_sub(&writes_before, 1) > 0)
+        return false;
+    errno = atomic_load(&failing_errno);
+    return true;
+}
+
+/* A disk that takes its time, takes little at once, or fails; else it does as it is told. */
 ssize_t __wrap_write(int descriptor, const void *bytes, size_t size)
 {
+    const size_t most = atomic_load(&most_bytes);
     for (int waited_ms = 0; waited_ms < atomic_load(&disk_pause_ms); waited_ms++)
         nanosleep(&(struct timespec){0, 1000000}, NULL);
-    return __real_write(descriptor, bytes, size);
+    if (fails())
+        return -1;
+    return __real_write(descriptor, bytes, most > 0 && size > most ? most : size);
+}
+
+/* What cannot be written any more cannot be cut off either. */
+int __wrap_ftruncate64(int descriptor, off_t size)
+{
+    if (atomic_load(&failing_errno) != 0 && atomic_load(&writes_before) < 0) {
+        errno = atomic_load(&failing_errno);
+        return -1;
+    }
+    return __real_ftruncate64(descriptor, size);
 }
 
 static int64_t ms_since(int64_t start_ns)
@@ -92,6 +119,73 @@ static void a_disk_that_does_not_answer_is_left(void **state)
     atomic_store(&disk_pause_ms, 0);
     wait_for_size(in_folder("dead.raw"), SIDE * SIDE);
     nanosleep(&(struct timespec){0, 300000000}, NULL);
+}
+
+/* Plays what there is; the frames have to be those from 0 on. */
+static unsigned count_played(const char *path)
+{
+    static const frame_layout layout = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    error_text error;
+    camera_frame got;
+    unsigned count = 0;
+    char name[320];
+    snprintf(name, sizeof name, "file:%s@max", path);
+    camera *device = camera_open(name, &error);
+    if (device == NULL || !camera_configure(device, &(camera_wishes){0}, &error)) {
+        camera_close(device);
+        return 0;
+    }
+    camera_status status;
+    while ((status = camera_next(device, 100, &got, &error)) == CAMERA_FRAME) {
+        const camera_frame given = frame_of(&layout, count++);
+        assert_memory_equal(got.image.data, given.image.data, WIDTH * HEIGHT);
+    }
+    assert_int_equal(status, CAMERA_END);
+    camera_close(device);
+    return count;
+}
+
+/* Records until it cannot, or all were taken. */
+static void record_on_failing_disk(const char *path, int failure, int after, size_t most)
+{
+    static const frame_layout layout = {PIXEL_GREY, WIDTH, HEIGHT, WIDTH};
+    error_text error = {""};
+    recording *file = recording_open(path, 25, &error);
+    assert_non_null(file);
+    atomic_store(&most_bytes, most);
+    atomic_store(&writes_before, after);
+    atomic_store(&failing_errno, failure);
+    bool good = true;
+    for (unsigned i = 0; good && i < FRAMES; i++) {
+        const camera_frame given = frame_of(&layout, i);
+        good = recording_add(file, &given, &error);
+    }
+    good = recording_close(file, &error) && good;
+    const bool failed = atomic_load(&writes_before) < 0;
+    atomic_store(&failing_errno, 0);
+    atomic_store(&most_bytes, 0);
+    assert_int_equal(good, !failed);
+    if (failed)
+        assert_non_null(strstr(error.text, strerror(failure)));
+}
+
+/* It becomes read-only, breaks, or a quota is used up: what was whole before is played. */
+static void a_disk_that_fails_leaves_what_was_whole(void **state)
+{
+    static const int failures[] = {EROFS, EIO, ENOSPC, EDQUOT, EBADF, EPERM, ENXIO};
+    static const char *const names[] = {"failing.raw", "failing.y4m"};
+    (void)state;
+    for (size_t k = 0; k < COUNT_OF(names); k++)
+        for (size_t f = 0; f < COUNT_OF(failures); f++) {
+            unsigned last = 0;
+            for (int after = 0; after < 4 * FRAMES; after++) {
+                record_on_failing_disk(in_folder(names[k]), failures[f], after, WIDTH * HEIGHT / 2);
+                const unsigned count = count_played(in_folder(names[k]));
+                assert_in_range(count, last, FRAMES);
+                last = count;
+            }
+            assert_in_range(last, FRAMES / 2, FRAMES);
+        }
 }
 
 static void pipes_are_written_as_they_are_read(void **state)
@@ -173,6 +267,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_slow_disk_keeps_nobody_waiting),
         cmocka_unit_test(a_disk_that_does_not_answer_is_left),
+        cmocka_unit_test(a_disk_that_fails_leaves_what_was_whole),
         cmocka_unit_test(pipes_are_written_as_they_are_read),
         cmocka_unit_test(what_a_killed_program_recorded_is_played),
     };
