@@ -271,6 +271,7 @@ static tapemark_status status_of(const tapemark_result *result)
     return result->stats.limits ? TAPEMARK_UNFINISHED : TAPEMARK_NOTHING_FOUND;
 }
 
+/* Here `workspace` is a type. NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name) */
 tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config, void *memory,
                                 size_t workspace_size, tapemark_result *result)
 {

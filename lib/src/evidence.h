@@ -48,8 +48,8 @@ typedef struct tmi_evidence {
 /* From cells whose scale tmi_blank_score() has adjusted. */
 void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells);
 
-/* Normalised correlation of the cells with the blank word in which `count` bits are set. */
-float tmi_evidence_correlate(const tmi_evidence *e, const uint8_t *bits, unsigned count);
+/* Normalised correlation of the cells with the blank word in which `count` bits are changed. */
+float tmi_evidence_correlate(const tmi_evidence *e, const uint8_t *changed, unsigned count);
 
 /* By how much the squared error falls when one bit is set; the square of its bump, summed; and what two bumps share:
  * setting both gains twice that less than each for itself. */

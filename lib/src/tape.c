@@ -104,7 +104,7 @@ static int best_neighbour(const tmi_tape *tape, int i, int direction, int *direc
     int best = TMI_NONE;
     float least = 0;
     for (int j = 0; j < tape->count; j++) {
-        int back;
+        int back = 0;
         const float m = j == i ? -1 : misfit(&tape->nodes[i].finder, direction, &tape->nodes[j].finder, &back);
         if (m < 0 || (best != TMI_NONE && m >= least))
             continue;
