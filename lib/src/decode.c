@@ -271,8 +271,7 @@ static tapemark_status status_of(const tapemark_result *result)
     return result->stats.limits ? TAPEMARK_UNFINISHED : TAPEMARK_NOTHING_FOUND;
 }
 
-/* Here `workspace` is a type. NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name) */
-tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config, void *memory,
+tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_config *config, void *workspace_at,
                                 size_t workspace_size, tapemark_result *result)
 {
     static const tapemark_config defaults = {0};
@@ -284,15 +283,16 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
         return TAPEMARK_BAD_CALL;
     if (!config_is_valid(config ? config : &defaults))
         return TAPEMARK_BAD_CONFIG;
-    if (!memory || workspace_size < tapemark_workspace_bytes(image->width_px, image->height_px))
+    if (!workspace_at || workspace_size < tapemark_workspace_bytes(image->width_px, image->height_px))
         return TAPEMARK_BAD_WORKSPACE;
     if (image->width_px < TMI_SMALLEST_SIDE || image->height_px < TMI_SMALLEST_SIDE)
         return TAPEMARK_NOTHING_FOUND;
 
     const tapemark_config settings = with_defaults(config ? config : &defaults, image);
     const tmi_view view = view_of(image, settings.polarity);
-    const size_t misaligned = (uintptr_t)memory % _Alignof(workspace);
-    workspace *w = (workspace *)(void *)((uint8_t *)memory + (misaligned ? _Alignof(workspace) - misaligned : 0));
+    const size_t misaligned = (uintptr_t)workspace_at % _Alignof(workspace);
+    const size_t skipped = misaligned ? _Alignof(workspace) - misaligned : 0;
+    workspace *w = (workspace *)(void *)((uint8_t *)workspace_at + skipped);
     find_tapes(w, &view, &settings, &result->stats);
     report_finders(&w->tape, result);
 
