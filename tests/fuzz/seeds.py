@@ -1,10 +1,12 @@
 """Makes the seeds of the fuzz targets, a folder each, out of the repository's own data: seeds.py REPOSITORY FOLDER.
 
-The folder is made anew. The same repository gives the same seeds.
+The folder is made anew. The same repository gives the same seeds. In its folder "words" are dictionaries for
+libFuzzer, for targets whose inputs are made of words.
 """
 import json
 import pathlib
 import random
+import re
 import shutil
 import struct
 import sys
@@ -19,6 +21,11 @@ def put(target, name, content):
     path = folder / target / name
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+def put_words(target, words):
+    lines = ['"' + "".join(f"\\x{byte:02x}" for byte in word.encode()) + '"\n' for word in sorted(set(words))]
+    put("words", f"{target}.dict", "".join(lines))
 
 
 # ---- Pictures and scripts of them --------------------------------------------------------------------------------
@@ -164,11 +171,53 @@ def configurations():
     put("config", "service", (repository / "apps/stream/stream.conf").read_bytes())
     put("config", "all", "camera = v4l2:/dev/video0\nserial = /dev/ttyAMA0:115200\nencoding = nmea\n"
         "format = GREY\nsize = 640x480\nrate = 29.97\nexposure = 2000\ngain = 3\nroi = 64x48+8+8\npreview = 8080\n"
-        "markers = 9\nrepeat = yes\nrecord = /tmp/a.y4m\nmap = map.json\nconfidence = 0.5\n")
-    put("config", "outputs", "\xef\xbb\xbfoutput = udp:127.0.0.1:9000\r\n# comment\r\nseen = gpiochip0:17:low\r\n"
+        "markers = 9\nrepeat = yes\nrecord = a.y4m\nmap = map.json\nconfidence-min = 0.5\n")
+    put("config", "outputs", "\xef\xbb\xbfoutput = udp:127.0.0.1:9000\r\n# comment\r\ngpio-seen = gpiochip0:17:low\r\n"
         .encode("latin-1"))
-    put("config", "words", "--camera\nfile:walk.y4m@max\n--roi=8x8+0+0\n--trigger\n0:GPIO17:pull-up\n--rate\nmax\n")
+    put("config", "words", "--camera\nfile:walk.y4m@max\n--roi=8x8+0+0\n--gpio-trigger\n0:GPIO17:pull-up\n--snapshots=.\n--rate\nmax\n")
     put("config", "words-list", "--list\n")
+
+
+def texts_of(*sources):
+    return "".join((repository / source).read_text() for source in sources)
+
+
+def options_in(*sources):
+    """The long options that stand in a program's help, with the dashes."""
+    return re.findall(r"--[a-z][a-z-]+", texts_of(*sources))
+
+
+def strings_in(*sources):
+    """What stands between quotes and has no blanks: names, choices, formats."""
+    return re.findall(r'"([A-Za-z0-9:_.-]{1,24})"', texts_of(*sources))
+
+
+def command_lines():
+    decode = ["walk.y4m", "--raw GREY:320x240 a.raw", "--format csv --min-confidence 0.5 a", "--help", "-",
+              "--map map.json --annotate out a.png b.png", "--light-on-dark --roll 90 --id-max 7 a"]
+    make = ["plan.json -o out", "--cms 6 -o out --paper roll --svg --png 300", "--line 3.5m -o o --height 45mm",
+            "plan.json -o out --only 17..20,5 --scale 100.3% --no-labels", "--cms 9 -o o --tm-cms 4 --tm-cms-max 9"]
+    render = ["--ids 7,-8,9 --distance 2m --yaw 30 -o tape.png --truth tape.jsonl",
+              "--picture aruco.png:60mm:7 --distance 2m -o aruco.png",
+              "--map map.json --camera 1.5,2,1.4,-90,-20 -o room.png --box 1,1,1,1,1,5 --cover 1,2,3,4",
+              "--map map.json --path walk.csv --fps 25 --shutter 10ms -o walk.y4m --furnished yes",
+              "--scene walk --like condition-a --format Y10P --stride 900 -o a.raw --ids 1 --at 1,2,0,90"]
+    for target, lines in (("decode_options", decode), ("make_options", make), ("render_options", render)):
+        for number, line in enumerate(lines):
+            put(target, str(number), line.replace(" ", "\n"))
+    formats = strings_in("platform/frame.c")
+    put_words("decode_options", formats + options_in("apps/decode/options.c") + strings_in("apps/decode/options.c"))
+    put_words("make_options", options_in("apps/make/make_options.c") + strings_in("apps/make/make_options.c"))
+    put_words("render_options", options_in("apps/render/render_help.c") + formats +
+              strings_in("apps/render/render_choices.c", "apps/render/render_options.c", "apps/render/thing_options.c"))
+    settings = strings_in("apps/stream/settings.c", "platform/record_sink.c", "platform/gpio_lines.c", "platform/camera.c")
+    put_words("config", settings + ["--" + word for word in settings] + formats)
+    put_words("control", strings_in("apps/stream/commands.c", "apps/stream/settings.c") + ["$PTMKQ,"])
+    put_words("raw", formats)
+    put_words("map", [f'"{word}"' for word in strings_in("platform/map_own.c", "platform/map_own_cms.c",
+                                                         "platform/map_reading.c", "platform/map_paper.c")])
+    put_words("plan", [f'"{word}"' for word in strings_in("apps/make/plan_file.c")])
+    put_words("preview", ["GET ", "HEAD ", "/stream", "/frame.jpg", "\r\n", "\r\n\r\nHost:", "localhost", "[::1]:80"])
 
 
 def vectors(kind):
@@ -238,5 +287,5 @@ def drivers():
 
 shutil.rmtree(folder, ignore_errors=True)
 for make in (decoder_scripts, raw_captures, pgm_pictures, y4m_videos, jpegs, pngs, containers, recordings, maps,
-             plans, configurations, lines, requests, paths, drivers):
+             plans, configurations, command_lines, lines, requests, paths, drivers):
     make()

@@ -1,12 +1,9 @@
 /* Configuration files of tapemark-stream, and the same settings as words on its command line. */
-#include <string.h>
-
 #include "camera_mode.h"
 #include "config_file.h"
 #include "content_file.h"
+#include "option_words.h"
 #include "stream_options.h"
-
-enum { WORDS_MAX = 40, WORDS_BYTES = 4096 };
 
 static void claim_settings(const stream_settings *settings)
 {
@@ -33,22 +30,13 @@ static void read_as_file(const uint8_t *bytes, size_t size)
     content_file_close(&file);
 }
 
-/* A line is a word. No file is opened: what follows --config is not there. */
 static void read_as_words(const uint8_t *bytes, size_t size)
 {
-    char text[WORDS_BYTES] = "tapemark-stream\n";
-    char *words[WORDS_MAX + 1];
-    int count = 0;
-    const size_t begin = strlen(text), most = sizeof text - 1 - begin;
-    memcpy(text + begin, bytes, size < most ? size : most);
-    char *rest = text;
-    for (char *word = strtok_r(text, "\n", &rest); word != NULL && count < WORDS_MAX;
-         word = strtok_r(NULL, "\n", &rest))
-        words[count++] = word;
-    words[count] = NULL;
+    static option_words line;
     stream_settings settings = settings_usual();
     error_text error = {""};
-    const options_answer answer = stream_options_read((command_line){count, words}, &settings, &error);
+    option_words_read(&line, "tapemark-stream", bytes, size);
+    const options_answer answer = stream_options_read((command_line){line.count, line.words}, &settings, &error);
     CLAIM(answer >= OPTIONS_RUN && answer <= OPTIONS_BAD_CONFIG);
     if (answer == OPTIONS_RUN)
         claim_settings(&settings);

@@ -76,7 +76,9 @@ static void claim_received_alike(const tapemark_record *record, const uint8_t *w
         CLAIM(type == TAPEMARK_RECORD_NONE);
         type = tapemark_receiver_push(&receiver, written[i]);
     }
-    CLAIM(type == record->type && receiver.damaged == 0 && receiver.unknown == 0);
+    CLAIM(type == record->type && receiver.unknown == 0);
+    /* What is in a packet may look like the beginning of a sentence. */
+    CLAIM(receiver.damaged == 0 || written[0] == 0);
     record_to_text(record, one);
     record_to_text(&receiver.record, other);
     CLAIM(strcmp(one, other) == 0);
