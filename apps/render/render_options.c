@@ -202,7 +202,7 @@ static options_answer take_options(render_options *all, int argc, char *argv[], 
     struct option list[KNOWN_OPTIONS + 3];
     list_options(list);
     opterr = 0;
-    optind = 1;
+    optind = 0;  /* anew, also in the middle of a word that an earlier call stopped at */
     for (int code; (code = getopt_long(argc, argv, ":o:", list, NULL)) != -1;) {
         if (code == CODE_HELP)
             return OPTIONS_HELP;
