@@ -132,12 +132,13 @@ static uint32_t roll(uint32_t below)
     return (dice >> 8) % below;
 }
 
-/* Short, long, marked as torn, of another time or number; now and then one as it should be. False: no frame can come of
- * it. */
+/* Short, long, marked as torn, of another time or number; now and then one as it should be. False: no frame can come
+ * of it. */
 static bool take_odd_picture(void)
 {
     enum { FRAME_BYTES = 64 * 48 };
-    static const uint32_t sizes[] = {1, FRAME_BYTES / 2, FRAME_BYTES - 1, FRAME_BYTES + 1, 2 * FRAME_BYTES, UINT32_MAX};
+    static const uint32_t sizes[] = {1, FRAME_BYTES / 2, FRAME_BYTES - 1, FRAME_BYTES + 1, 2 * FRAME_BYTES,
+                                     UINT32_MAX};
     static const int64_t ages_ns[] = {0, INT64_C(3600000000000), INT64_C(-3600000000000), INT64_C(5000000000),
                                       INT64_C(-50000000), INT64_C(9000000000000000)};
     static const uint32_t flags[] = {V4L2_BUF_FLAG_TSTAMP_SRC_SOE, V4L2_BUF_FLAG_TSTAMP_SRC_EOF,

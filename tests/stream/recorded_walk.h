@@ -21,8 +21,8 @@ typedef struct recorded_walk_state {
 
 bool recorded_walk_read(recorded_walk *walk, const char *path);
 
-/* Looks at a recording and the times beside it. One that is not there holds nothing. False when a whole frame is not the
- * one of its number, or numbers do not ascend. */
+/* Looks at a recording and the times beside it. One that is not there holds nothing. False when a whole frame is not
+ * the one of its number, or numbers do not ascend. */
 bool recorded_walk_look(const recorded_walk *walk, const char *path, recorded_walk_state *state);
 
 void recorded_walk_release(recorded_walk *walk);

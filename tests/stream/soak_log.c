@@ -43,8 +43,8 @@ static double percentile_ms(const soak_log *self, unsigned percent)
 void soak_log_begin(soak_log *self)
 {
     if (self->file != NULL)
-        fputs("time_s,frames,sent,dropped,spoiled,unexplained,wrong,misplaced,cms,tms,damaged_bytes,harms,memory_kib,descriptors,"
-              "age_p50_ms,age_p99_ms\n", self->file);
+        fputs("time_s,frames,sent,dropped,spoiled,unexplained,wrong,misplaced,cms,tms,damaged_bytes,harms,"
+              "memory_kib,descriptors,age_p50_ms,age_p99_ms\n", self->file);
 }
 
 static void write_line(soak_log *self, pid_t program)
@@ -61,7 +61,7 @@ static void write_line(soak_log *self, pid_t program)
             soak_descriptors(program), percentile_ms(self, 50), percentile_ms(self, 99));
     fflush(self->file);
     self->age_count = 0;
-    self->lines++;
+    self->lines = check->position / self->frames_a_line;
 }
 
 void soak_log_record(soak_log *self, const tapemark_record *record, pid_t program)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Usage: soak_scenes.sh BUILD_FOLDER FOLDER
-# Renders what the long soak plays: recordings into FOLDER/recordings, and the truth about all their frames, in the order
-# in which a directory is played, into FOLDER/truth.jsonl. About 1500 frames: walks, rooms, tapes that are far away,
+# Renders what the long soak plays: recordings into FOLDER/recordings, and the truth about all their frames, in the
+# order in which a directory is played, into FOLDER/truth.jsonl. About 1500 frames: walks, rooms, tapes that are far away,
 # oblique, blurred, dark, over-exposed, in shadow, covered or damaged, and clutter without any tape.
 set -eu
 render=$1/bin/tapemark-render
@@ -38,10 +38,11 @@ for round in 1 2 3 4 5 6 7 8 9 10; do
         scene --size 320x240 $row $ids --px-per-module 2.3 --defocus 1.$round
         scene --size 480x270 $row $ids --px-per-module 2.8 --exposure 0.$((round + 2)) --gradient 0.3
         scene --size 480x270 $row $ids --px-per-module 2.8 --exposure 2.$round --bloom 0.2 --bloom-size 3
-        scene --size 320x240 $row $ids --px-per-module 2.2 --shadow 0.$((round % 6 + 2)) --shadow-angle $((round * 20)) \
-            --background blinds --angle 70
+        scene --size 320x240 $row $ids --px-per-module 2.2 --shadow 0.$((round % 6 + 2)) \
+            --shadow-angle $((round * 20)) --background blinds --angle 70
         scene --size 480x270 $row $ids --px-per-module 3 --roll $((roll % 40)) --covered 0.$((round % 5 + 1))
-        scene --size 480x270 --frames 8 --ids $id --px-per-module 4.$((round % 10)) --roll $roll --jpeg $((30 + 5 * round))
+        scene --size 480x270 --frames 8 --ids $id --px-per-module 4.$((round % 10)) --roll $roll \
+            --jpeg $((30 + 5 * round))
     }
     # None there at all.
     for background in noise popcorn blinds checkerboard stripes text squares; do

@@ -1,8 +1,9 @@
 /*
  * Usage: stream_signals PROGRAM WALK.y4m WALK.jsonl [TIMES [SEED]]
  * Runs tapemark-stream so many times (200 unless told) and sends it signals at random moments, from its first
- * instruction on: SIGHUP and SIGPIPE in passing, SIGTERM or SIGKILL as the last. It has to end, as told and in time; what
- * came over the line has to be right; what it recorded has to be played up to the last whole frame, each frame as it was.
+ * instruction on: SIGHUP and SIGPIPE in passing, SIGTERM or SIGKILL as the last. It has to end, as told and in time;
+ * what came over the line has to be right; what it recorded has to be played up to the last whole frame, each frame
+ * as it was.
  */
 #include <signal.h>
 #include <stdio.h>
@@ -226,7 +227,8 @@ int main(int argc, char **argv)
     self.walk_path = argv[2];
     self.dice = argc > 5 ? (uint32_t)strtoul(argv[5], NULL, 10) : 1;
     snprintf(self.folder, sizeof self.folder, "/tmp/tapemark-signals-XXXXXX");
-    if (!truth_read(argv[3], &walk) || !recorded_walk_read(&self.reference, argv[2]) || mkdtemp(self.folder) == NULL) {
+    if (!truth_read(argv[3], &walk) || !recorded_walk_read(&self.reference, argv[2]) ||
+        mkdtemp(self.folder) == NULL) {
         fprintf(stderr, "stream_signals: cannot begin\n");
         return 1;
     }

@@ -2,9 +2,9 @@
  * Usage: stream_soak PROGRAM RECORDING TRUTH.jsonl [FRAMES [LOG.csv]]
  * Runs tapemark-stream flat out over a recording (or a directory of them) that begins again and again, until so many
  * frames went by (100000 unless told), and does to it what happens in weeks, each at least twice: the line stalls, is
- * read at another rate, comes back as an echo, the port is pulled out and comes back, rubbish comes as commands, settings
- * are read again; and bytes are damaged on the way all the time. Every record that the receiver takes is held against
- * the truth, each frame has to come, to be told of as dropped, or to be one that harm was done to; memory and
+ * read at another rate, comes back as an echo, the port is pulled out and comes back, rubbish comes as commands,
+ * settings are read again; and bytes are damaged on the way all the time. Every record that the receiver takes is held
+ * against the truth, each frame has to come, to be told of as dropped, or to be one that harm was done to; memory and
  * descriptors have to stay as they are.
  */
 #include <signal.h>
@@ -44,8 +44,8 @@ static bool begin(soak *self, char **arguments)
 static void tell_unexplained(const soak *self, const tapemark_frame_record *head, uint16_t seq_before)
 {
     const soak_harm *harm = &self->harm;
-    printf("unexplained: after %u came %u, which tells of %u dropped; %d ms after harm %u (%s), %llu bytes after damage "
-           "%llu\n", seq_before, head->seq, head->dropped, (int)((host_clock_ns() - harm->last_ns) / 1000000),
+    printf("unexplained: after %u came %u, which tells of %u dropped; %d ms after harm %u (%s), %llu bytes after "
+           "damage %llu\n", seq_before, head->seq, head->dropped, (int)((host_clock_ns() - harm->last_ns) / 1000000),
            harm->count, harm->count > 0 ? soak_harm_names[(harm->count - 1) % SOAK_HARMS] : "none",
            (unsigned long long)(self->host.taken_bytes - harm->damaged_at),
            (unsigned long long)harm->damaged_bytes);

@@ -1,4 +1,5 @@
-/* The line, treated badly: its other end reads at another rate, sends everything back, or talks nonsense without end. */
+/* The line, treated badly: its other end reads at another rate, sends everything back, or talks nonsense without
+ * end. */
 #include "stream_test.h"
 
 #include "uart.h"
