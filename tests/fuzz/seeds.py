@@ -48,6 +48,7 @@ def decoder_scripts():
     put("decode_pixels", "tape", bytes([159, 34, 0]) + bytes(9) + b"\0" + rows)
     for number in range(8):
         put("places", f"any-{number}", chance.randbytes(100 + 100 * number))
+        put("line", f"any-{number}", chance.randbytes(20 + 30 * number))
 
 
 def raw_captures():
