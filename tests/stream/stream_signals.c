@@ -111,10 +111,11 @@ static bool ends(run *self, int last_signal)
     self->host.program = 0;
     take_records(self, 20);
     const bool unborn = self->check.frames + self->check.lost == 0;
-    const bool by_signal = WIFSIGNALED(status) &&
-                           (WTERMSIG(status) == last_signal || (unborn && is_passing(WTERMSIG(status))));
+    const int by_signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     self->all.unborn += unborn;
-    if (last_signal == SIGKILL || (unborn && by_signal) || (WIFEXITED(status) && WEXITSTATUS(status) == 0))
+    if (last_signal == SIGKILL ? by_signal == SIGKILL : WIFEXITED(status) && WEXITSTATUS(status) == 0)
+        return true;
+    if (unborn && (by_signal == last_signal || is_passing(by_signal)))
         return true;
     return complain(self, WIFEXITED(status) ? "wrong exit status" : "ended by another signal");
 }
