@@ -1,0 +1,93 @@
+#!/bin/sh
+# Usage: mutate.sh [PATTERN]
+# Breaks the library one line after the other, as mutations.txt tells (with a pattern, only where the file's name or the
+# line matches it), and runs the tests until one fails. Prints for each what noticed it. Fails when none did, or when a
+# line is no longer there. Takes a copy of the source tree, and some ten minutes.
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+pattern=${1:-.}
+source=$(cd "$here/../.." && pwd)
+: "${TAPEMARK_PAPER_DATA:=$source/../shared/paper}"
+export TAPEMARK_PAPER_DATA
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+trap 'exit 1' HUP INT TERM
+copy=$work/source
+build=$work/build
+mkdir "$copy" "$copy/apps"
+cp -R "$source/CMakeLists.txt" "$source/lib" "$source/tests" "$copy"
+cp -R "$source/apps/render" "$copy/apps"
+cp -R "$copy/lib" "$work"
+
+cmake -G Ninja -S "$copy" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTAPEMARK_BUILD_PROGRAMS=OFF \
+    -DCMAKE_COMPILE_WARNING_AS_ERROR=OFF >"$work/log"
+parts="tests/unit/all tests/link/all tests/decode/all"
+# shellcheck disable=SC2086 # words of $parts are targets
+cmake --build "$build" --target $parts >"$work/log" || { cat "$work/log"; exit 1; }
+
+# Runs the tests of a part of the library, the quick ones first; prints the name of the one that failed first.
+first_failure()
+{
+    quick='^decode/test_(scan|tiles|tape|finder|marker|decode_(options|calls|pieces|views))$'
+    slow='^decode/test_(word|far|damage|decode_(light|clutter))$'
+    case $1 in
+    lib/link/*) stages='^link/' ;;
+    lib/src/map.c) stages='^unit/test_map$' ;;
+    lib/src/code.c | lib/src/blake2b.c) stages='^unit/' ;;
+    *) stages="$quick $slow" ;;
+    esac
+    for tests in $stages; do
+        failing=$(ctest --test-dir "$build" -j "$(nproc)" --stop-on-failure --timeout 120 -R "$tests" 2>/dev/null |
+            sed -n 's/^.*Test *#[0-9]*: \([^ ]*\) .*\*\*\*.*$/\1/p' | grep -v Skipped | head -n 1)
+        [ -z "$failing" ] || break
+    done
+    echo "$failing"
+}
+
+for part in lib/src lib/src/code.c lib/link/; do
+    failing=$(first_failure $part)
+    [ -z "$failing" ] || { echo "$failing fails before anything was broken"; exit 1; }
+done
+
+# One mutation a line: file, tab, old text, tab, new text.
+awk '/^#/ || !NF { next } /^- / { old = substr($0, 3); next } /^[+] / { print file "\t" old "\t" substr($0, 3); next }
+     { file = $1 }' "$here/mutations.txt" | grep -e "$pattern" >"$work/mutations"
+
+# Puts the new text in place of the old one, which has to be there once.
+mutate()
+{
+    OLD=$2 NEW=$3 awk '
+        { at = index($0, ENVIRON["OLD"]) }
+        at {
+            found++
+            $0 = substr($0, 1, at - 1) ENVIRON["NEW"] substr($0, at + length(ENVIRON["OLD"]))
+        }
+        { print }
+        END { exit found != 1 }' "$work/$1" >"$copy/$1"
+}
+
+status=0
+killed=0
+tab=$(printf '\t')
+while IFS=$tab read -r file old new <&3; do
+    if ! mutate "$file" "$old" "$new"; then
+        outcome="NOT THERE ONCE"
+        status=1
+    elif ! cmake --build "$build" --target $parts >"$work/log" 2>&1; then
+        outcome="DOES NOT COMPILE"
+        status=1
+    else
+        outcome=$(first_failure "$file")
+        if [ -n "$outcome" ]; then
+            killed=$((killed + 1))
+        else
+            outcome=SURVIVED
+            status=1
+        fi
+    fi
+    cp "$work/$file" "$copy/$file"
+    printf '%-34s %s\n    %s\n    -> %s\n' "$file" "$outcome" "$old" "$new"
+done 3<"$work/mutations"
+echo "$killed of $(wc -l <"$work/mutations") noticed"
+exit $status
