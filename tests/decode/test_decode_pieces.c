@@ -206,6 +206,22 @@ static void tapes_are_read_before_clutter(void **state)
     }
 }
 
+/* A segment of more CMs than a TM may have is read in parts, and said to be too long; no TM is made up of a part. */
+static void says_when_a_segment_is_too_long(void **state)
+{
+    (void)state;
+    enum { CMS = 40 };
+    static int32_t ids[CMS];
+    for (int i = 0; i < CMS; i++)
+        ids[i] = i % 3 == 1 ? -1 - i : 1 + i;
+    one_tape all = place_tape(scene_default(2160, 60), ids, CMS, true, (scene_pose){.px_per_module = 2});
+    const decoding *got = decode_tape(&all, NULL, "too long a tape");
+    assert_nothing_wrong(got, &all.view);
+    assert_int_equal(got->result.stats.limits & TAPEMARK_LIMIT_LENGTH, TAPEMARK_LIMIT_LENGTH);
+    assert_int_equal(count_read(got), CMS);
+    assert_int_equal(got->result.tm_count, 0);
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -219,6 +235,7 @@ int main(void)
         cmocka_unit_test(segments_without_bars_are_no_tms),
         cmocka_unit_test(gratings_are_no_bars),
         cmocka_unit_test(tapes_are_read_before_clutter),
+        cmocka_unit_test(says_when_a_segment_is_too_long),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -435,6 +435,38 @@ static void confidence_grows_with_score_and_odds(void **state)
     assert_true(tmi_reading_confidence(&clear) > tmi_reading_confidence(&doubtful));
 }
 
+static void no_word_is_read_as_an_id_that_none_has(void **state)
+{
+    (void)state;
+    static const int32_t beyond[] = {INT32_MIN, -1, TAPEMARK_MAX_ID + 1, INT32_MAX};
+    uint16_t rows[ROWS];
+    tmi_reading reading;
+    assert_int_equal(tapemark_cm_grid(424242, rows), TAPEMARK_OK);
+    const tmi_cells cells = cells_of_rows(rows, 0, 0);
+    for (size_t i = 0; i < COUNT_OF(beyond); i++) {
+        tmi_word_read_as(&cells, &all_words, beyond[i], &reading);
+        assert_int_equal(reading.id, TMI_NO_ID);
+        assert_true(reading.score < 0);
+    }
+    tmi_word_read_as(&cells, &all_words, 424242, &reading);
+    assert_int_equal(reading.id, 424242);
+    assert_true(reading.score > 0.99f);
+}
+
+/* The word of no ones, inverted, is that of no id: there is no -0. */
+static void dark_cells_are_not_read_as_minus_zero(void **state)
+{
+    (void)state;
+    uint16_t rows[ROWS];
+    tmi_reading reading;
+    assert_int_equal(tapemark_cm_grid(-5, rows), TAPEMARK_OK);
+    const tmi_cells cells = cells_of_rows(rows, 0, 0);
+    tmi_word_read_as(&cells, &all_words, 0, &reading);
+    assert_int_equal(reading.id, TMI_NO_ID);
+    tmi_word_read_as(&cells, &all_words, 5, &reading);
+    assert_int_equal(reading.id, -5);
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
@@ -459,6 +491,8 @@ int main(void)
         cmocka_unit_test(a_near_tie_goes_to_the_known_word),
         cmocka_unit_test(a_clear_foreign_word_is_not_bent_to_a_known_one),
         cmocka_unit_test(confidence_grows_with_score_and_odds),
+        cmocka_unit_test(no_word_is_read_as_an_id_that_none_has),
+        cmocka_unit_test(dark_cells_are_not_read_as_minus_zero),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

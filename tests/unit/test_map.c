@@ -337,6 +337,25 @@ static void tm_and_cms_that_contradict_each_other(void **state)
     expect_place(locate("101", true, READ({22, 0})), TAPEMARK_RUNS_BACKWARDS, -1, false);
 }
 
+/* What tapemark_map_check() would have found leads to no memory outside of the table. */
+static void a_tm_that_is_not_there_is_none(void **state)
+{
+    static const int32_t id = 1;
+    static const int32_t wrong[] = {1, 2, INT32_MAX, -2, INT32_MIN};
+    static const tapemark_map_tm mapped = {.code = 4, .length = 3};
+    tapemark_cm cm = {.id = 1, .tm = 0, .slot = 0};
+    tapemark_tm tm = {.code = "100", .length = 3, .directed = true};
+    tapemark_result result = {.cms = &cm, .cm_count = 1, .tms = &tm, .tm_count = 1};
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        tapemark_map_cm entry = {.tm = wrong[i], .slot = 0};
+        tapemark_map map = {&id, &entry, 1, &mapped, 1};
+        tapemark_tm_place place;
+        assert_int_equal(tapemark_map_locate_tm(&map, &result, 0, &place), TAPEMARK_NOTHING_FOUND);
+        expect_place(place, TAPEMARK_CM_WITHOUT_TM, -1, false);
+    }
+}
+
 static void bad_calls_of_locate(void **state)
 {
     tapemark_tm tm = {.code = "100", .length = 3, .directed = true};
@@ -349,6 +368,8 @@ static void bad_calls_of_locate(void **state)
     assert_int_equal(tapemark_map_locate_tm(&small, NULL, 0, &place), TAPEMARK_BAD_CALL);
     assert_int_equal(tapemark_map_locate_tm(&small, &result, 0, NULL), TAPEMARK_BAD_CALL);
     tm.code[0] = '\0';
+    assert_int_equal(tapemark_map_locate_tm(&small, &result, 0, &place), TAPEMARK_BAD_CALL);
+    tm.code[0] = 'x';
     assert_int_equal(tapemark_map_locate_tm(&small, &result, 0, &place), TAPEMARK_BAD_CALL);
     tm.code[0] = '1';
     result.cm_count = 1;
@@ -371,6 +392,7 @@ int main(void)
         cmocka_unit_test(tm_without_cms_is_located_by_its_code),
         cmocka_unit_test(tm_agrees_with_its_cms),
         cmocka_unit_test(tm_and_cms_that_contradict_each_other),
+        cmocka_unit_test(a_tm_that_is_not_there_is_none),
         cmocka_unit_test(bad_calls_of_locate),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
