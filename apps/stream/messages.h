@@ -6,7 +6,8 @@
  * by taking it away from them for a while. */
 void messages_begin(void);
 
-/* One line whatever the texts hold. `subject` may be NULL. */
+/* One line whatever the texts hold. `subject` may be NULL. Never waits: where nobody reads, lines are left out, and the
+ * next one that finds room tells how many. */
 void message_tell(const char *subject, const char *text);
 
 #endif

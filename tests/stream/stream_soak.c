@@ -92,6 +92,13 @@ static int settled_descriptors(soak *self)
     return descriptors;
 }
 
+/* What it says is heard, and forgotten. */
+static void hear(soak *self)
+{
+    self->host.said_size = 0;
+    host_count_said(&self->host, "\n");
+}
+
 /* Frames that went by, sent or not, as their numbers tell. */
 static bool run(soak *self, uint64_t frames)
 {
@@ -104,9 +111,9 @@ static bool run(soak *self, uint64_t frames)
         if (self->warm && host_clock_ns() >= next_fault_ns) {
             if (!soak_harm_do(&self->harm, self->host.program))
                 return false;
+            hear(self);
             next_fault_ns = host_clock_ns() + FAULT_EVERY_MS * INT64_C(1000000);
         }
-        self->host.said_size = 0;
     }
     return true;
 }

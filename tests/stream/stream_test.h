@@ -24,7 +24,8 @@
 #define WALK "file:" STREAM_DATA "/walk.y4m"
 #define ARGUMENTS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
-enum { SOON_MS = 10000 };
+/* Long: a program with sanitizers on a busy machine takes seconds to begin. */
+enum { SOON_MS = 30000 };
 
 static truth walk;
 static stream_host host;

@@ -128,6 +128,31 @@ static void each_reload_is_told_of(void **state)
     rmdir(folder);
 }
 
+/* Whoever started it does not read what it says, or no more: it goes on. */
+static void messages_that_nobody_reads(void **state)
+{
+    (void)state;
+    enum { ROOM_BYTES = 4096, TIMES = 150 };
+    char config[] = "/tmp/tapemark-stream-unread-XXXXXX";
+    assert_int_not_equal(close(mkstemp(config)), -1);
+    fill_file(config, "repeat = yes\n", 13);
+    start(ARGUMENTS("--config", config, "--camera", WALK "@50", "--serial", "LINE:921600"));
+    assert_int_equal(fcntl(host.said_pipe, F_SETPIPE_SZ, ROOM_BYTES), ROOM_BYTES);
+    for (unsigned i = 0; i < TIMES; i++) {
+        expect_record(TAPEMARK_RECORD_FRAME);
+        assert_int_equal(kill(host.program, SIGHUP), 0);
+    }
+    host_forget(&host);
+    for (unsigned i = 0; i < 10; i++)
+        expect_record(TAPEMARK_RECORD_FRAME);
+    assert_true(host_says(&host, "were read again\n", SOON_MS));
+    assert_true(host_count_said(&host, "\n") < TIMES);
+    assert_int_equal(kill(host.program, SIGHUP), 0);
+    assert_true(host_says(&host, " messages were left out here: nobody read them\n", SOON_MS));
+    end_program();
+    unlink(config);
+}
+
 /* ---- Inputs that hang ---------------------------------------------------------------------------------------- */
 
 static bool tells_lost_camera(const tapemark_frame_record *head)
@@ -378,6 +403,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(term_at_any_moment, open_host, close_host),
         cmocka_unit_test_setup_teardown(storm_of_hangups, open_host, close_host),
         cmocka_unit_test_setup_teardown(each_reload_is_told_of, open_host, close_host),
+        cmocka_unit_test_setup_teardown(messages_that_nobody_reads, open_host, close_host),
         cmocka_unit_test_setup_teardown(pipe_that_falls_silent, open_host, close_host),
         cmocka_unit_test_setup_teardown(pipe_that_nobody_writes_to, open_host, close_host),
         cmocka_unit_test_setup_teardown(waiting_costs_next_to_nothing, open_host, close_host),
