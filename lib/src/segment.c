@@ -83,16 +83,26 @@ static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
 
 /* ---- TMs --------------------------------------------------------------------------------------------------- */
 
-/* Bars have to correlate with ideal ones by this much. */
-static const float bars_min = 0.62f;
+/* Bars have to correlate with ideal ones by this much; by that much where no CM between them is believed: finder
+ * patterns with anything between them, and gratings at the ends, come to 0.85. */
+static const float bars_min = 0.62f, lone_bars_min = 0.9f;
 
 /* Reads a part that lies in the image and has bars at both ends. */
 static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
-                              tmi_tm_reading *reading)
+                              float least_bars, tmi_tm_reading *reading)
 {
     tapemark_point corners[4];
     tmi_tm_corners(segment, first, count, false, corners);
-    return tmi_corners_inside(reader->view, corners) && tmi_tm_read(reader, segment, first, count, bars_min, reading);
+    return tmi_corners_inside(reader->view, corners) &&
+           tmi_tm_read(reader, segment, first, count, least_bars, reading);
+}
+
+static bool any_believed(const tapemark_reject *reasons, int first, int count)
+{
+    for (int cm = first; cm < first + count; cm++)
+        if (reasons[cm] == TMI_BELIEVED)
+            return true;
+    return false;
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
@@ -102,11 +112,12 @@ static int read_tm(const tmi_reader *reader, tmi_segment *segment, const tapemar
 {
     tapemark_result *result = reader->result;
     tmi_tm_reading reading;
+    const float least_bars = any_believed(reasons, first, count) ? bars_min : lone_bars_min;
     /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
-    if (!read_between_bars(reader, segment, first, count, &reading) &&
+    if (!read_between_bars(reader, segment, first, count, least_bars, &reading) &&
         !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                        &result->stats.work) &&
-          read_between_bars(reader, segment, first, count, &reading))) {
+          read_between_bars(reader, segment, first, count, least_bars, &reading))) {
         result->stats.rejects[TAPEMARK_REJECT_BARS]++;
         return TMI_NONE;
     }
