@@ -84,8 +84,8 @@ static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
 /* ---- TMs --------------------------------------------------------------------------------------------------- */
 
 /* Bars have to correlate with ideal ones by this much; by that much where no CM between them is believed: finder
- * patterns with anything between them, and gratings at the ends, come to 0.85. */
-static const float bars_min = 0.62f, lone_bars_min = 0.9f;
+ * patterns with anything between them, and gratings at the ends, hardly come to more than 0.85. */
+static const float bars_min = 0.62f, unread_bars_min = 0.9f;
 
 /* Reads a part that lies in the image and has bars at both ends. */
 static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
@@ -97,12 +97,17 @@ static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segme
            tmi_tm_read(reader, segment, first, count, least_bars, reading);
 }
 
-static bool any_believed(const tapemark_reject *reasons, int first, int count)
+/* What bars have to be at the ends of these CMs: more than any are, where not one of the CMs looks like one. */
+static float bars_needed(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count)
 {
-    for (int cm = first; cm < first + count; cm++)
+    float best = -1;
+    for (int cm = first; cm < first + count; cm++) {
         if (reasons[cm] == TMI_BELIEVED)
-            return true;
-    return false;
+            return bars_min;
+        best = real_max(best, real_max(segment->readings[TMI_UPRIGHT][cm].score,
+                                       segment->readings[TMI_TURNED][cm].score));
+    }
+    return best >= glance_min ? unread_bars_min : 2;
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
@@ -112,7 +117,7 @@ static int read_tm(const tmi_reader *reader, tmi_segment *segment, const tapemar
 {
     tapemark_result *result = reader->result;
     tmi_tm_reading reading;
-    const float least_bars = any_believed(reasons, first, count) ? bars_min : lone_bars_min;
+    const float least_bars = bars_needed(segment, reasons, first, count);
     /* Bars lie beyond the outermost finders, where the map of a single small CM is least sure. */
     if (!read_between_bars(reader, segment, first, count, least_bars, &reading) &&
         !(tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
