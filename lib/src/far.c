@@ -24,8 +24,9 @@ static const float blocks_px = 0.55f;
 /* Modules that words need to be told from each other, whatever they show, px. */
 static const float words_px = 0.95f;
 
-/* How much clearer one way up must be than the other. */
-static const float turn_min = 0.15f;
+/* How much clearer one way up must be than the other; and how much the light CMs of a TM make it. Blocks between bars,
+ * light throughout or dark throughout, come to 0.1, tapes to 0.43 at least, however blurred. */
+static const float turn_min = 0.15f, tm_turn_min = 0.25f;
 
 /* ---- Reading a row -------------------------------------------------------------------------------------------- */
 
@@ -131,20 +132,27 @@ static bool is_tape(const tmi_reader *reader, const tmi_far *far, const tmi_row 
     return least_px < rings_px || rings.strength > 0.2f;
 }
 
+/* Whether it explains the wave to both ends, has bars there, and blocks between that are those of CMs. */
+static bool may_be_tm(const tmi_row *row, float turn)
+{
+    return row->explained > tm_explained_min && row->cm_count >= TAPEMARK_TM_MIN_CMS && row->bars[0] > bars_min &&
+           row->bars[1] > bars_min &&
+           (row->dark == UINT32_MAX >> (32 - row->cm_count) || real_abs(turn) > tm_turn_min);
+}
+
 static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
 {
     const float least_px = real_min(row->module, far->wave.stripe.height * (1.0f / TAPEMARK_HEIGHT_MODULES));
     if (least_px < blocks_px || !is_tape(reader, far, row, least_px))
         return;
-    const bool has_bars = row->explained > tm_explained_min && row->cm_count >= TAPEMARK_TM_MIN_CMS &&
-                          row->bars[0] > bars_min && row->bars[1] > bars_min;
+    const float turn = turn_of(reader, far, row);
+    const bool is_tm = may_be_tm(row, turn);
     tmi_tm_reading tm;
-    if (has_bars)
+    if (is_tm)
         read_lines(reader, far, row, &tm);
     tm.bars = 1 - 5 * (1 - row->explained);
-    const float turn = turn_of(reader, far, row);
     lay_out(far, row);
-    tmi_segment_read_far(reader, &far->segment, row->cm_count, has_bars ? &tm : NULL,
+    tmi_segment_read_far(reader, &far->segment, row->cm_count, is_tm ? &tm : NULL,
                          real_abs(turn) > turn_min ? turn : 0, least_px > words_px);
 }
 
