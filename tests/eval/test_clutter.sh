@@ -28,6 +28,23 @@ for kind in finder-lattice finder-rows random-cells; do
     [ "$(numbers frames_with_candidates $kind)" -ge $((frames / 2)) ] || fail "hardly anything to be read in $kind"
 done
 
+# ---- Frames that once misled ----------------------------------------------------------------------------------------
+
+# Finder patterns with stripes, checks and dots between them, whose best words happened to ascend; the same between
+# gratings that passed for bars; blocks between bars, too small for the patterns to be seen.
+while read -r kind numbers; do
+    for number in $numbers; do
+        run 0 --kinds "$kind" --first "$number" --frames 1 --strict
+        expect_none out '"type":'
+        expect out "\"kind\":\"$kind\",\"frames\":1,"
+    done
+done <<END
+finder-lattice 78 898 954 1731 734 854 1463 1778 1824 11448
+random-cells 1655
+finder-carpet 1909 2313
+bars-and-blocks 1318 1681 2610
+END
+
 # ---- A tape among the sheets is told, with its pictures ------------------------------------------------------------
 
 mkdir sheets kept
