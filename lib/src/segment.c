@@ -83,9 +83,9 @@ static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
 
 /* ---- TMs --------------------------------------------------------------------------------------------------- */
 
-/* Bars have to correlate with ideal ones by this much; by that much where no CM between them is believed: finder
- * patterns with anything between them, and gratings at the ends, hardly come to more than 0.85. */
-static const float bars_min = 0.62f, unread_bars_min = 0.9f;
+/* Bars have to correlate with ideal ones by this much; by more where no CM between them is believed, and by still more
+ * where none looks like one: finder patterns with anything between them, and gratings at the ends, come to 0.88. */
+static const float bars_min = 0.62f, unread_bars_min = 0.9f, bare_bars_min = 0.96f;
 
 /* Reads a part that lies in the image and has bars at both ends. */
 static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segment, int first, int count,
@@ -97,7 +97,7 @@ static bool read_between_bars(const tmi_reader *reader, const tmi_segment *segme
            tmi_tm_read(reader, segment, first, count, least_bars, reading);
 }
 
-/* What bars have to be at the ends of these CMs: more than any are, where not one of the CMs looks like one. */
+/* How well bars have to correlate at the ends of these CMs. */
 static float bars_needed(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count)
 {
     float best = -1;
@@ -107,7 +107,7 @@ static float bars_needed(const tmi_segment *segment, const tapemark_reject *reas
         best = real_max(best, real_max(segment->readings[TMI_UPRIGHT][cm].score,
                                        segment->readings[TMI_TURNED][cm].score));
     }
-    return best >= glance_min ? unread_bars_min : 2;
+    return best >= glance_min ? unread_bars_min : bare_bars_min;
 }
 
 /* Reads the CMs first..first + count - 1 as a TM: `turn` is positive where the row runs as the tape reads, negative
