@@ -97,24 +97,29 @@ static void weigh(sequence *s, int cm)
 static const float clear_of_next = 1.15f, unexplained_max = 1.45f;
 enum { COMMON_RANKS = 3081 };
 
-/* A sequence leaves this many times less unexplained than what all words share does, and that many times less than
- * the next best one in addition, multiplied over its CMs. What only looks like CMs leaves as much with its best
- * sequence: of 18 000 frames of it, made to mislead, none came to more than 1.6 and 2.8. Right sequences come to 1.9
- * and 3.7 at least, also with a tenth of the cells flipped; one in a hundred to less than 2.5 and 5. */
-static const float words_evidence = 2, evidence_min = 3.7f;
+/* A sequence leaves this many times less unexplained than what all words share does (words), and that many times less
+ * than that and the next best one together (all), multiplied over its CMs. More is asked of sequences of words of three
+ * and four ones, of which there are so many that one fits what is none: of 22 000 frames made to mislead the best came
+ * to 2.4 and 4.3, of words of two ones to 1.6 and 2.8. Right ones come to more, but for one in a hundred, also with a
+ * tenth of the cells flipped. */
+typedef struct evidence_level {
+    float words, all;
+} evidence_level;
+static const evidence_level common_needed = {2, 3.7f}, rare_needed = {2.6f, 5};
 
 /* Next bests are compared up to this factor. */
 static const float odds_max = 4;
 
 static bool is_evident(const sequence *s, const guess *best, float odds)
 {
+    const evidence_level *needed = best->start + s->count <= COMMON_RANKS ? &common_needed : &rare_needed;
     const float gain = s->shared / real_max(1e-3f, best->unexplained);
     float words = 1, all = 1;
     for (int i = 0; i < s->sampled; i++) {
         words = real_min(1e6f, words * gain);
         all = real_min(1e6f, all * gain * odds);
     }
-    return words >= words_evidence && all >= evidence_min;
+    return words >= needed->words && all >= needed->all;
 }
 
 /* The guess that explains all CMs, or NULL. */

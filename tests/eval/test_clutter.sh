@@ -40,7 +40,7 @@ while read -r kind numbers; do
     done
 done <<END
 finder-lattice 78 898 954 1731 734 854 1463 1778 1824 11448
-random-cells 1655
+random-cells 1655 13420 14697
 finder-carpet 1909 2313
 bars-and-blocks 1318 1681 2610
 END
