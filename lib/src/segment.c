@@ -83,8 +83,9 @@ static void read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
 
 /* ---- TMs --------------------------------------------------------------------------------------------------- */
 
-/* Bars have to correlate with ideal ones by this much; by more where no CM between them is believed, and by still more
- * where none looks like one: finder patterns with anything between them, and gratings at the ends, come to 0.88. */
+/* Bars have to correlate with ideal ones by this much; by more where no CM between them is believed, and by still
+ * more where none looks like one: finder patterns with anything between them, and gratings at the ends, come to
+ * 0.88. */
 static const float bars_min = 0.62f, unread_bars_min = 0.9f, bare_bars_min = 0.96f;
 
 /* Reads a part that lies in the image and has bars at both ends. */

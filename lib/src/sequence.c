@@ -97,11 +97,11 @@ static void weigh(sequence *s, int cm)
 static const float clear_of_next = 1.15f, unexplained_max = 1.45f;
 enum { COMMON_RANKS = 3081 };
 
-/* A sequence leaves this many times less unexplained than what all words share does (words), and that many times less
- * than that and the next best one together (all), multiplied over its CMs. More is asked of sequences of words of three
- * and four ones, of which there are so many that one fits what is none: of 22 000 frames made to mislead the best came
- * to 2.4 and 4.3, of words of two ones to 1.6 and 2.8. Right ones come to more, but for one in a hundred, also with a
- * tenth of the cells flipped. */
+/* A sequence leaves this many times less unexplained than what all words share does (words), and that many times
+ * less than that and the next best one together (all), multiplied over its CMs. More is asked of sequences of words
+ * of three and four ones, of which there are so many that one fits what is none: of 22 000 frames made to mislead the
+ * best came to 2.4 and 4.3, of words of two ones to 1.6 and 2.8. Right ones come to more, but for one in a hundred,
+ * also with a tenth of the cells flipped. */
 typedef struct evidence_level {
     float words, all;
 } evidence_level;
