@@ -24,8 +24,8 @@ static const float blocks_px = 0.55f;
 /* Modules that words need to be told from each other, whatever they show, px. */
 static const float words_px = 0.95f;
 
-/* How much clearer one way up must be than the other; and how much the light CMs of a TM make it. Blocks between bars,
- * light throughout or dark throughout, come to 0.1, tapes to 0.43 at least, however blurred. */
+/* How much clearer one way up must be than the other; and how much the light CMs of a TM make it. Blocks between
+ * bars, light throughout or dark throughout, come to 0.1, tapes to 0.43 at least, however blurred. */
 static const float turn_min = 0.15f, tm_turn_min = 0.25f;
 
 /* ---- Reading a row -------------------------------------------------------------------------------------------- */
