@@ -109,6 +109,27 @@ static void half_a_tape_is_no_wrong_id(void **state)
     }
 }
 
+/* Of the nine lines that vote, those that miss the bars of one end say nothing; the others are enough. */
+static void bars_covered_in_part_are_bars(void **state)
+{
+    (void)state;
+    for (int covered_px = 2; covered_px <= 26; covered_px += 2) {
+        one_tape all = place_tape(scene_default(640, 160), first_ids, 5, true, (scene_pose){.px_per_module = 4});
+        /* The tape is 28 px high and 592 px long with its bars; the last of them are covered from below. */
+        const scene_cover cover = {.x_px = 604, .y_px = 94, .width_px = 64, .height_px = 2 * covered_px, .shade = 235};
+        all.view.covers = &cover;
+        all.view.cover_count = 1;
+        const decoding *got = decode_tape(&all, NULL, "bars covered in part");
+        assert_nothing_wrong(got, &all.view);
+        if (covered_px <= 6) {
+            assert_int_equal(got->result.tm_count, 1);
+            assert_string_equal(got->tms[0].code, "11010");
+        } else if (covered_px >= 16) {
+            assert_int_equal(got->result.tm_count, 0);
+        }
+    }
+}
+
 static void ids_need_not_ascend(void **state)
 {
     (void)state;
@@ -231,6 +252,7 @@ int main(void)
         cmocka_unit_test(tapes_cut_by_the_border_are_no_wrong_tms),
         cmocka_unit_test(a_covered_cm_is_a_gap_and_no_wrong_id),
         cmocka_unit_test(half_a_tape_is_no_wrong_id),
+        cmocka_unit_test(bars_covered_in_part_are_bars),
         cmocka_unit_test(ids_need_not_ascend),
         cmocka_unit_test(segments_without_bars_are_no_tms),
         cmocka_unit_test(gratings_are_no_bars),

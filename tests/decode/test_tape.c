@@ -149,6 +149,34 @@ static void without_work_left_nothing_is_foretold(void **state)
 }
 
 /* A finder pattern that is covered ends the row; what lies beyond is a row of its own. */
+static bool is_neighbour(int of, int which)
+{
+    for (int d = 0; d < TMI_DIRECTIONS; d++)
+        if (set.tape.nodes[of].neighbour[d] == which)
+            return true;
+    return false;
+}
+
+/* Two that a third may follow: it follows the one that suits it best, and the other one is left alone. */
+static void follows_the_better_of_two(void **state)
+{
+    (void)state;
+    for (int rival_first = 0; rival_first < 2; rival_first++) {
+        render_tape((scene_pose){.px_per_module = 4});
+        tmi_finder rival = set.finders[0];
+        rival.centre.x += 4.4f * rival.down.x - 3 * rival.right.x;
+        rival.centre.y += 4.4f * rival.down.y - 3 * rival.right.y;
+        const int rival_at = tmi_tape_add(&set.tape, rival_first ? &rival : &set.finders[0]) + !rival_first;
+        assert_int_equal(tmi_tape_add(&set.tape, rival_first ? &set.finders[0] : &rival), 1);
+        assert_int_equal(tmi_tape_add(&set.tape, &set.finders[1]), 2);
+        tmi_tape_link(&set.tape);
+        assert_true(is_neighbour(2, 1 - rival_at));
+        assert_true(is_neighbour(1 - rival_at, 2));
+        assert_false(is_neighbour(2, rival_at));
+        assert_false(is_neighbour(rival_at, 2));
+    }
+}
+
 static void a_gap_splits_the_row(void **state)
 {
     (void)state;
@@ -213,6 +241,7 @@ int main(void)
         cmocka_unit_test(foretells_what_the_scan_lines_missed),
         cmocka_unit_test(a_single_finder_foretells_its_tape),
         cmocka_unit_test(without_work_left_nothing_is_foretold),
+        cmocka_unit_test(follows_the_better_of_two),
         cmocka_unit_test(a_gap_splits_the_row),
         cmocka_unit_test(lone_finders_are_counted),
         cmocka_unit_test(knows_where_its_finders_are),
