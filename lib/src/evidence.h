@@ -11,6 +11,7 @@ typedef struct tmi_cells {
     float value[TAPEMARK_CELLS];
     /* What each module gives to its next one along the tape and across it: the blur, in modules. */
     float leak_along, leak_across;
+    bool narrow; /* modules are narrower, one way, than words need to be told from each other */
 } tmi_cells;
 
 /* Turns the cells by half a turn: as seen by a reader who stands on the head. */

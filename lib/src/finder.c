@@ -67,46 +67,85 @@ static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
     return 3.5f * module;
 }
 
-static float cast_ray(const tmi_view *view, tmi_point start, tmi_point direction, float step_px, float swing,
+static float cast_ray(const tmi_view *view, tmi_point start, tmi_point direction, tmi_point step_px, float swing,
                       uint32_t *reads)
 {
-    ray_walk walk = {.view = view, .start = start, .step = {direction.x * step_px, direction.y * step_px}};
-    return step_px * ray_reach(&walk, swing, reads);
+    ray_walk walk = {.view = view, .start = start, .step = {direction.x * step_px.x, direction.y * step_px.y}};
+    return ray_reach(&walk, swing, reads);
+}
+
+/* How far the core goes on from `start`, up to where it has become lighter by `swing`; negative where it does not
+ * end. */
+static float core_reach(const tmi_view *view, tmi_point start, tmi_point direction, float step_px, float swing,
+                        uint32_t *reads)
+{
+    const float core = tmi_sample(view, start.x, start.y) + swing;
+    int i = 1;
+    float before = core - swing, now = before;
+    for (; i < RAY_SAMPLES; i++, before = now) {
+        now =
+            tmi_sample(view, start.x + (float)i * step_px * direction.x, start.y + (float)i * step_px * direction.y);
+        if (now > core)
+            break;
+    }
+    *reads += (uint32_t)i;
+    return i < RAY_SAMPLES ? step_px * ((float)i - (now - core) / (now - before)) : -1;
+}
+
+/* Width or height of the core at `start`, which is moved halfway between its two edges; negative where there is no
+ * core around. */
+static float centre_along(const tmi_view *view, tmi_point *start, bool vertical, float step_px, float swing,
+                          uint32_t *reads)
+{
+    const tmi_point d = vertical ? (tmi_point){0, 1} : (tmi_point){1, 0};
+    const float ahead = core_reach(view, *start, d, step_px, swing, reads);
+    const float behind = ahead < 0 ? -1 : core_reach(view, *start, (tmi_point){-d.x, -d.y}, step_px, swing, reads);
+    if (behind < 0)
+        return -1;
+    start->x += 0.5f * (ahead - behind) * d.x;
+    start->y += 0.5f * (ahead - behind) * d.y;
+    return ahead + behind;
 }
 
 /* The middle between the core's two edges up and down, then left and right: from anywhere within the core this
  * lands near its centre. False when there is no core around. */
-static bool centre_in_core(const tmi_view *view, tmi_point *start, float step_px, float swing, uint32_t *reads)
+static bool centre_in_core(const tmi_view *view, tmi_point *start, float step_px, float swing, tmi_point *size,
+                           uint32_t *reads)
 {
-    static const int order[4][2] = {{4, 12}, {0, 8}, {4, 12}, {0, 8}};
-    for (int k = 0; k < 4; k++) {
-        float reach[2];
-        for (int side = 0; side < 2; side++) {
-            const tmi_point d = ray_direction[order[k][side]];
-            const float core = tmi_sample(view, start->x, start->y) + swing;
-            int i = 1;
-            float before = core - swing, now = before;
-            for (; i < RAY_SAMPLES; i++, before = now) {
-                now = tmi_sample(view, start->x + (float)i * step_px * d.x, start->y + (float)i * step_px * d.y);
-                if (now > core)
-                    break;
-            }
-            *reads += (uint32_t)i;
-            if (i == RAY_SAMPLES)
-                return false;
-            reach[side] = step_px * ((float)i - (now - core) / (now - before));
-        }
-        const float shift = 0.5f * (reach[0] - reach[1]);
-        start->x += shift * ray_direction[order[k][0]].x;
-        start->y += shift * ray_direction[order[k][0]].y;
+    for (int k = 0; k < 2; k++) {
+        size->y = centre_along(view, start, true, step_px, swing, reads);
+        size->x = size->y < 0 ? -1 : centre_along(view, start, false, step_px, swing, reads);
+        if (size->x < 0)
+            return false;
     }
     return true;
+}
+
+/* A core that is this many times as long as it is wide is seen at an angle. */
+static const float steep = 2.5f;
+
+/* Steps of rays along x and y. At an angle they are as much longer one way than the other, a part of a module either
+ * way, so that rays are spread over the square as over one that is seen head-on. Then the core's middle, which may
+ * have been looked for in steps too wide for its narrow side, is found once more. */
+static tmi_point ray_step(const tmi_view *view, tmi_point *start, float step_px, float swing, tmi_point size,
+                          uint32_t *reads)
+{
+    const bool upright = size.x < size.y;
+    const float longer = upright ? size.y : size.x, shorter = upright ? size.x : size.y;
+    if (longer < steep * shorter)
+        return (tmi_point){step_px, step_px};
+    const float fine_px = real_max(0.4f, real_min(step_px, 0.08f * shorter));
+    const float width = real_max(1, centre_along(view, start, !upright, fine_px, swing, reads));
+    const float length =
+        real_max(width, centre_along(view, start, upright, real_min(step_px, 0.08f * longer), swing, reads));
+    const float step = real_max(0.25f, 1.2f / width) * (1.0f / 3);
+    return upright ? (tmi_point){step * width, step * length} : (tmi_point){step * length, step * width};
 }
 
 /* ---- From the rays to a square ----------------------------------------------------------------------- */
 
 typedef struct outline {
-    float x[RAYS], y[RAYS]; /* of the dark ring's outer edge, from the start point */
+    float x[RAYS], y[RAYS]; /* of the dark ring's outer edge, from the start point, in steps of the rays */
 } outline;
 
 /* Puts the rays together to an outline. Opposite rays reach about as far as each other: where one is missing, or
@@ -204,7 +243,8 @@ static tmi_point square_turn(const outline *out, const moments *m, const float i
     return turn;
 }
 
-static void square_from_moments(const moments *m, const outline *out, tmi_point start, tmi_finder *finder)
+static void square_from_moments(const moments *m, const outline *out, tmi_point start, tmi_point step_px,
+                                tmi_finder *finder)
 {
     /* Symmetric square root of covariance * 12 / 7^2: the shape of one module, up to its turn. */
     const float k = 12.0f / 49;
@@ -213,9 +253,9 @@ static void square_from_moments(const moments *m, const outline *out, tmi_point 
     const float sa = t * (a + root_det), sb = t * b, sd = t * (d + root_det);
     const float inverse[3] = {sd / root_det, -sb / root_det, sa / root_det};
     const tmi_point turn = square_turn(out, m, inverse);
-    finder->centre = (tmi_point){start.x + m->x, start.y + m->y};
-    finder->right = (tmi_point){sa * turn.x + sb * turn.y, sb * turn.x + sd * turn.y};
-    finder->down = (tmi_point){-sa * turn.y + sb * turn.x, -sb * turn.y + sd * turn.x};
+    finder->centre = (tmi_point){start.x + step_px.x * m->x, start.y + step_px.y * m->y};
+    finder->right = (tmi_point){step_px.x * (sa * turn.x + sb * turn.y), step_px.y * (sb * turn.x + sd * turn.y)};
+    finder->down = (tmi_point){step_px.x * (-sa * turn.y + sb * turn.x), step_px.y * (-sb * turn.y + sd * turn.x)};
 }
 
 /* ---- Fine location ------------------------------------------------------------------------------------ */
@@ -378,20 +418,22 @@ bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads
 bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, float contrast, tmi_finder *finder,
                        uint32_t *reads)
 {
-    const float step_px = real_max(0.4f, 0.25f * module_px), swing = 0.2f * contrast;
-    if (!centre_in_core(view, &start, step_px, 0.5f * contrast, reads))
+    const float step_px = real_max(0.4f, 0.25f * module_px), swing = 0.5f * contrast;
+    tmi_point core;
+    if (!centre_in_core(view, &start, step_px, swing, &core, reads))
         return false;
+    const tmi_point step = ray_step(view, &start, step_px, swing, core, reads);
     float reach[RAYS];
     int missing = 0;
     for (int i = 0; i < RAYS && missing <= MISSING_MAX; i++) {
-        reach[i] = cast_ray(view, start, ray_direction[i], step_px, swing, reads);
+        reach[i] = cast_ray(view, start, ray_direction[i], step, 0.2f * contrast, reads);
         missing += reach[i] == 0;
     }
     outline out;
     moments m;
     if (missing > MISSING_MAX || !close_outline(reach, &out) || !outline_moments(&out, &m))
         return false;
-    square_from_moments(&m, &out, start, finder);
+    square_from_moments(&m, &out, start, step, finder);
     tmi_finder_score(view, finder, reads);
     return finder->score >= outline_score && tmi_finder_refine(view, finder, reads);
 }

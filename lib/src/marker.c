@@ -152,6 +152,17 @@ static raster raster_for(const tmi_homography *map)
     return along < 16 || across < 16 ? (raster){2, 0.4f} : (raster){3, 0.25f};
 }
 
+/* Modules that words need to be told from each other, px. */
+static const float words_px = 0.95f;
+
+static bool is_narrow(const tmi_homography *map)
+{
+    const tmi_point a = tmi_project(map, 12, 0), b = tmi_project(map, 13, 0), c = tmi_project(map, 12, 1);
+    const float along = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
+    const float across = (c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y);
+    return real_min(along, across) < words_px * words_px;
+}
+
 static float sample_module(const tmi_view *view, const tmi_homography *map, raster r, float u, float v,
                            uint32_t *reads)
 {
@@ -212,6 +223,7 @@ void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tm
     const float light = 0.5f * (left->light + right->light), dark = 0.5f * (left->dark + right->dark);
     const float scale = 1 / real_max(1, light - dark);
     cells->leak_along = cells->leak_across = 0.1f;
+    cells->narrow = false;
     for (int i = 0; i < TAPEMARK_CELLS; i++) {
         const tmi_point at = tmi_project(map, (float)(FIRST_COLUMN + i % COLUMNS), (float)(i / COLUMNS - 3));
         cells->value[i] = (light - tmi_sample(view, at.x, at.y)) * scale;
@@ -231,6 +243,7 @@ bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float co
     const float depth = left.depth + right.depth, leak_max = 0.3f;
     cells->leak_along = real_min(leak_max, real_max(0, (left.leak_along + right.leak_along) / depth));
     cells->leak_across = real_min(leak_max, real_max(0, (left.leak_across + right.leak_across) / depth));
+    cells->narrow = is_narrow(map);
     for (int column = 0; column < COLUMNS; column++) {
         const float u = (float)(FIRST_COLUMN + column), t = u / PITCH;
         const float light = left.light + t * (right.light - left.light);

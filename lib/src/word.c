@@ -28,10 +28,12 @@ static const float one_cost = 0.35f;
 static const float known_id_bonus = 0.03f;
 
 /* Blur beyond which even without noise the right word may be missing on the shortlist: of both leaks together, or of
- * one. The odds are then cut down to what is enough only where the next CM says the same id. */
+ * one; or as little that was resolved. The odds are then cut down to what is enough only where the next CM says the
+ * same id. */
 static bool is_too_blurred(const tmi_cells *cells)
 {
-    return cells->leak_along + cells->leak_across > 0.5f || real_max(cells->leak_along, cells->leak_across) > 0.295f;
+    return cells->narrow || cells->leak_along + cells->leak_across > 0.5f ||
+           real_max(cells->leak_along, cells->leak_across) > 0.295f;
 }
 
 typedef struct candidate {

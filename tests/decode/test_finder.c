@@ -141,6 +141,21 @@ static void located_when_foreshortened(void **state)
         }
 }
 
+/* Down to a fifth of the width, where rows and columns of pixels run along the pattern's sides or nearly so. */
+static void located_when_steep(void **state)
+{
+    (void)state;
+    static const double tilts_deg[] = {-77, -74, 74, 77};
+    for (size_t i = 0; i < COUNT_OF(tilts_deg); i++)
+        for (int roll_deg = -8; roll_deg <= 98; roll_deg += roll_deg == 8 ? 74 : 4) {
+            const double px_per_module = 1.6 / direction_of(tilts_deg[i]).x;
+            render_pattern(px_per_module, roll_deg, 0, tilts_deg[i], 0.4);
+            assert_located("pitch", tilts_deg[i], 0.15, 0.06);
+            render_pattern(px_per_module, roll_deg, tilts_deg[i], 0, 0.4);
+            assert_located("yaw", tilts_deg[i], 0.15, 0.06);
+        }
+}
+
 static void located_when_sheared(void **state)
 {
     (void)state;
@@ -298,6 +313,7 @@ int main(void)
         cmocka_unit_test(located_at_any_rotation),
         cmocka_unit_test(located_at_any_size),
         cmocka_unit_test(located_when_foreshortened),
+        cmocka_unit_test(located_when_steep),
         cmocka_unit_test(located_when_sheared),
         cmocka_unit_test(located_through_blur),
         cmocka_unit_test(refining_pulls_back_what_is_off),

@@ -165,6 +165,35 @@ static void leaks_grow_with_the_blur(void **state)
     assert_true(before_along > 0.15f && before_along <= 0.3f);
 }
 
+/* Wherever the camera stands: along the tape or across it, from afar or at an angle. */
+static void narrow_cells_are_told(void **state)
+{
+    (void)state;
+    static const struct {
+        scene_pose pose;
+        bool narrow;
+    } views[] = {
+        {{.px_per_module = 1.1}, false},
+        {{.px_per_module = 0.8}, true},
+        {{.px_per_module = 4, .yaw_deg = 74}, false},
+        {{.px_per_module = 4, .yaw_deg = 78.5}, true},
+        {{.px_per_module = 4, .pitch_deg = -74}, false},
+        {{.px_per_module = 4, .pitch_deg = -78.5}, true},
+    };
+    for (size_t i = 0; i < COUNT_OF(views); i++) {
+        scene view = scene_ideal(WIDTH, HEIGHT);
+        view.camera.focal_px = 1e4; /* one module is like the next */
+        render(view, views[i].pose, true);
+        tmi_homography map;
+        tmi_cells cells;
+        uint32_t reads = 0;
+        tmi_marker_map(&set.finders[1], &set.finders[2], &map);
+        assert_true(tmi_marker_sample(&set.view, &map, 10, &cells, &reads));
+        if (cells.narrow != views[i].narrow)
+            fail_msg("view %u: narrow %d", (unsigned)i, cells.narrow);
+    }
+}
+
 static void cells_without_contrast_are_not_sampled(void **state)
 {
     (void)state;
@@ -223,6 +252,7 @@ int main(void)
         cmocka_unit_test(row_maps_need_a_row),
         cmocka_unit_test(samples_cells_as_printed),
         cmocka_unit_test(leaks_grow_with_the_blur),
+        cmocka_unit_test(narrow_cells_are_told),
         cmocka_unit_test(cells_without_contrast_are_not_sampled),
         cmocka_unit_test(bars_are_seen_at_the_ends_alone),
         cmocka_unit_test(no_bars_no_score),

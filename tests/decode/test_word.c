@@ -135,6 +135,20 @@ static void matches_under_blur(void **state)
             }
 }
 
+/* Cells too narrow to be resolved are not enough for an id, however well they fit; with another CM's word they are. */
+static void narrow_cells_need_support(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT_OF(sample_ids); i++) {
+        tmi_cells cells = cells_of(sample_ids[i], 0.1f, 0.1f);
+        cells.narrow = true;
+        const tmi_reading reading = match(cells, &all_words);
+        assert_int_equal(reading.id, sample_ids[i]);
+        assert_false(believed(&reading));
+        assert_true(reading.odds > 1.15f);
+    }
+}
+
 /* Under more blur than that a word may be lost, but not taken for another one. */
 static void no_blur_makes_a_wrong_id(void **state)
 {
@@ -473,6 +487,7 @@ int main(void)
         cmocka_unit_test(matches_ideal_cells),
         cmocka_unit_test(matches_every_id_of_up_to_one_bit),
         cmocka_unit_test(matches_under_blur),
+        cmocka_unit_test(narrow_cells_need_support),
         cmocka_unit_test(no_blur_makes_a_wrong_id),
         cmocka_unit_test(matches_whatever_the_scale),
         cmocka_unit_test(little_noise_costs_nothing),
