@@ -419,8 +419,10 @@ bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, f
                        uint32_t *reads)
 {
     const float step_px = real_max(0.4f, 0.25f * module_px), swing = 0.5f * contrast;
+    /* Modules may be a pixel the other way: no light ring must be stepped over. */
+    const float core_step_px = real_max(0.25f * step_px, real_min(1, step_px));
     tmi_point core;
-    if (!centre_in_core(view, &start, step_px, swing, &core, reads))
+    if (!centre_in_core(view, &start, core_step_px, swing, &core, reads))
         return false;
     const tmi_point step = ray_step(view, &start, step_px, swing, core, reads);
     float reach[RAYS];

@@ -115,6 +115,27 @@ static void reads_a_tape_on_the_floor(void **state)
     assert_all_read(got, &all.view, 0.5);
 }
 
+/* So steep that modules are four and six times as long one way as the other. */
+static void reads_at_steep_angles(void **state)
+{
+    (void)state;
+    static const scene_pose poses[] = {
+        {.px_per_module = 5.5, .pitch_deg = 75, .roll_deg = 2},
+        {.px_per_module = 8.5, .pitch_deg = -80, .roll_deg = -2},
+        {.px_per_module = 7, .yaw_deg = 75},
+        {.px_per_module = 7, .yaw_deg = -75, .pitch_deg = 5},
+        {.px_per_module = 7, .yaw_deg = 75, .roll_deg = 90},
+    };
+    for (size_t i = 0; i < COUNT_OF(poses); i++) {
+        scene view = scene_default(1200, 720);
+        view.camera.focal_px = 3000;
+        one_tape all = place_tape(view, five_ids, 5, true, poses[i]);
+        char name[64];
+        snprintf(name, sizeof name, "steep %u", (unsigned)i);
+        assert_all_read(decode_tape(&all, NULL, name), &all.view, 0.5);
+    }
+}
+
 /* Below two pixels a module not every CM can be read; most are, and the code as a whole. */
 static void reads_small_modules(void **state)
 {
@@ -145,6 +166,7 @@ int main(void)
         cmocka_unit_test(reads_in_all_rolls),
         cmocka_unit_test(reads_in_perspective),
         cmocka_unit_test(reads_a_tape_on_the_floor),
+        cmocka_unit_test(reads_at_steep_angles),
         cmocka_unit_test(reads_small_modules),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
