@@ -217,6 +217,70 @@ static bool fit_levels(const tmi_view *view, const tmi_homography *map, raster r
     return true;
 }
 
+/* ---- Shadow edges ------------------------------------------------------------------------------------ */
+
+/* Light in the quiet zone above and below, from the left finder's centre to the right one's, where a shadow's edge
+ * runs across both. */
+typedef struct shade {
+    float light[2][PITCH + 1];
+    float edge[2]; /* where it passes the middle between what the finders show; u, modules */
+} shade;
+
+/* From this ratio of the finders' light on there is a shadow between them; less is as well taken for a slope. */
+static const float shade_min = 1.4f;
+
+/* The quiet zone is seen apart from what is around it, in modules of this many px at least. */
+static const float quiet_px = 3;
+
+static bool find_shade_edge(const float light[PITCH + 1], float middle, float *edge)
+{
+    int i = 1;
+    while (i <= PITCH && (light[i] < middle) == (light[0] < middle))
+        i++;
+    if (i > PITCH)
+        return false;
+    *edge = (float)(i - 1) + (middle - light[i - 1]) / (light[i] - light[i - 1]);
+    return true;
+}
+
+static bool find_shade(const tmi_view *view, const tmi_homography *map, const levels *left, const levels *right,
+                       shade *out, uint32_t *reads)
+{
+    const float least = real_min(left->light, right->light), most = real_max(left->light, right->light);
+    const tmi_point middle = tmi_project(map, 12, 0), below = tmi_project(map, 12, 1);
+    const float x = below.x - middle.x, y = below.y - middle.y;
+    if (!(most > shade_min * least) || x * x + y * y < quiet_px * quiet_px)
+        return false;
+    for (int side = 0; side < 2; side++) {
+        for (int u = 0; u <= PITCH; u++) {
+            const tmi_point at = tmi_project(map, (float)u, side ? 4 : -4);
+            out->light[side][u] = tmi_sample(view, at.x, at.y);
+        }
+        *reads += PITCH + 1;
+        if (!find_shade_edge(out->light[side], 0.5f * (least + most), &out->edge[side]))
+            return false;
+    }
+    return true;
+}
+
+static float shade_along(const float light[PITCH + 1], float u)
+{
+    const float at = real_max(0, real_min(PITCH - 0.001f, u));
+    const int i = (int)at;
+    return light[i] + (at - (float)i) * (light[i + 1] - light[i]);
+}
+
+/* Light at (u, v): what it is above and below at that distance from the edge, which is a straight line. */
+static float shade_at(const shade *s, float u, float v)
+{
+    const float down = (v + 4) * 0.125f, from_edge = u - s->edge[0] - down * (s->edge[1] - s->edge[0]);
+    const float above = shade_along(s->light[0], s->edge[0] + from_edge);
+    const float below = shade_along(s->light[1], s->edge[1] + from_edge);
+    return above + down * (below - above);
+}
+
+/* ---- Cells ------------------------------------------------------------------------------------------- */
+
 void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tmi_finder *left,
                        const tmi_finder *right, tmi_cells *cells, uint32_t *reads)
 {
@@ -244,13 +308,18 @@ bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float co
     cells->leak_along = real_min(leak_max, real_max(0, (left.leak_along + right.leak_along) / depth));
     cells->leak_across = real_min(leak_max, real_max(0, (left.leak_across + right.leak_across) / depth));
     cells->narrow = is_narrow(map);
+    shade edge;
+    const bool shaded = find_shade(view, map, &left, &right, &edge, reads);
+    const float ink = depth / (left.light + right.light); /* the part of the light that it takes */
     for (int column = 0; column < COLUMNS; column++) {
         const float u = (float)(FIRST_COLUMN + column), t = u / PITCH;
         const float light = left.light + t * (right.light - left.light);
         const float scale = 1 / (left.depth + t * (right.depth - left.depth));
         for (int row = 0; row < ROWS; row++) {
             const float value = sample_module(view, map, r, u, (float)(row - 3), reads);
-            cells->value[row * COLUMNS + column] = (light - value) * scale;
+            const float here = shaded ? shade_at(&edge, u, (float)(row - 3)) : light;
+            cells->value[row * COLUMNS + column] =
+                shaded ? (here - value) / real_max(1, here * ink) : (light - value) * scale;
         }
     }
     return true;

@@ -145,6 +145,29 @@ static void samples_cells_as_printed(void **state)
     }
 }
 
+/* So do they where a shadow's edge runs across the CM between two finder patterns, in which dark cells in the light are
+ * as bright as light ones in the shade. */
+static void samples_cells_across_a_shadows_edge(void **state)
+{
+    (void)state;
+    static const double angles_deg[] = {0, 150, 205};
+    for (size_t i = 0; i < COUNT_OF(angles_deg); i++) {
+        scene view = scene_ideal(WIDTH, HEIGHT);
+        view.light.shadow_depth = 0.85;
+        view.light.shadow_deg = angles_deg[i];
+        view.light.shadow_soft_px = 2;
+        render(view, (scene_pose){.px_per_module = 5, .roll_deg = 3, .dx_px = 110}, false);
+        tmi_homography map;
+        tmi_cells cells;
+        uint32_t reads = 0;
+        tmi_marker_map(&set.finders[1], &set.finders[2], &map);
+        assert_true(tmi_marker_sample(&set.view, &map, 10, &cells, &reads));
+        if (largest_cell_error(&cells, ids[1]) > 0.4f)
+            fail_msg("edge at %g degrees: a cell is off by %.2f", angles_deg[i],
+                     (double)largest_cell_error(&cells, ids[1]));
+    }
+}
+
 static void leaks_grow_with_the_blur(void **state)
 {
     (void)state;
@@ -251,6 +274,7 @@ int main(void)
         cmocka_unit_test(row_maps_reproduce_the_corners),
         cmocka_unit_test(row_maps_need_a_row),
         cmocka_unit_test(samples_cells_as_printed),
+        cmocka_unit_test(samples_cells_across_a_shadows_edge),
         cmocka_unit_test(leaks_grow_with_the_blur),
         cmocka_unit_test(narrow_cells_are_told),
         cmocka_unit_test(cells_without_contrast_are_not_sampled),
