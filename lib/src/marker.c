@@ -249,7 +249,7 @@ static bool find_shade(const tmi_view *view, const tmi_homography *map, const le
     const float least = real_min(left->light, right->light), most = real_max(left->light, right->light);
     const tmi_point middle = tmi_project(map, 12, 0), below = tmi_project(map, 12, 1);
     const float x = below.x - middle.x, y = below.y - middle.y;
-    if (!(most > shade_min * least) || x * x + y * y < quiet_px * quiet_px)
+    if (!(least > 0 && most > shade_min * least) || x * x + y * y < quiet_px * quiet_px)
         return false;
     for (int side = 0; side < 2; side++) {
         for (int u = 0; u <= PITCH; u++) {
