@@ -1,6 +1,7 @@
 #include "report.h"
 
 #include "judgement.h"
+#include "mirror.h"
 #include "real.h"
 
 /* Bars of tapes near enough to be read well correlate with ideal ones by this much. */
@@ -81,6 +82,14 @@ static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, i
     return ((code ^ light) & known) == 0 && !(known && covered);
 }
 
+static bool any_believed(const tapemark_reject *reasons, int first, int count)
+{
+    for (int cm = first; cm < first + count; cm++)
+        if (reasons[cm] == TMI_BELIEVED)
+            return true;
+    return false;
+}
+
 /* How sure the CMs make a TM: where some were read and others not, something may lie on those. Where none can be
  * read, the TM is seen from afar, and they say nothing. */
 static float vouched(const tapemark_reject *reasons, int first, int count)
@@ -103,9 +112,13 @@ int tmi_report_tm(const tmi_reader *reader, const tmi_segment *segment, const ta
 {
     tapemark_result *result = reader->result;
     const bool turned = turn < 0;
-    if (reading->vote < reader->config->vote_min || !agrees(segment, reasons, first, count, turned, reading->code)) {
-        result->stats
-            .rejects[reading->vote < reader->config->vote_min ? TAPEMARK_REJECT_VOTE : TAPEMARK_REJECT_CONFLICT]++;
+    if (reading->vote < reader->config->vote_min) {
+        result->stats.rejects[TAPEMARK_REJECT_VOTE]++;
+        return TMI_NONE;
+    }
+    if (!agrees(segment, reasons, first, count, turned, reading->code) ||
+        (!any_believed(reasons, first, count) && tmi_is_mirrored(reader, segment, first, count))) {
+        result->stats.rejects[TAPEMARK_REJECT_CONFLICT]++;
         return TMI_NONE;
     }
     if (result->tm_count == result->tm_capacity) {

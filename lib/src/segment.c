@@ -17,9 +17,6 @@ static const float blank_min = 0.3f;
 /* The same for a first look. */
 static const float glance_min = 0.2f;
 
-/* Comparing cells with what all words share, both ways up, costs as much as this many pixel reads. */
-enum { BLANK_WORK = 250 };
-
 /* A CM that is believed has paid for itself: the budget bounds what is spent in vain. */
 enum { CM_CREDIT = 2500 };
 
@@ -43,7 +40,7 @@ void tmi_segment_read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
     tmi_cells turned = cells;
     tmi_cells_turn(&turned);
     const float blank[2] = {tmi_blank_score(&cells), tmi_blank_score(&turned)};
-    stats->work += BLANK_WORK;
+    stats->work += TMI_BLANK_WORK;
     const float better = real_max(blank[TMI_UPRIGHT], blank[TMI_TURNED]);
     for (int way = TMI_UPRIGHT; way <= TMI_TURNED; way++) {
         segment->readings[way][cm].score = blank[way];
@@ -63,7 +60,7 @@ static bool may_be_cm(const tmi_reader *reader, const tmi_segment *segment, int 
                       &stats->work);
     tmi_cells turned = cells;
     tmi_cells_turn(&turned);
-    stats->work += BLANK_WORK;
+    stats->work += TMI_BLANK_WORK;
     return tmi_blank_score(&cells) >= glance_min || tmi_blank_score(&turned) >= glance_min;
 }
 

@@ -23,6 +23,9 @@ typedef struct tmi_segment {
 
 enum { TMI_UPRIGHT = 0, TMI_TURNED = 1 };
 
+/* Comparing cells with what all words share, both ways up, costs as much as this many pixel reads. */
+enum { TMI_BLANK_WORK = 250 };
+
 /* Whether there is work left; notes the limit where there is none. */
 bool tmi_may_go_on(const tmi_reader *reader);
 
