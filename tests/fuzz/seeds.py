@@ -54,7 +54,7 @@ def decoder_scripts():
 def raw_captures():
     gray = (data / "frame-grey-320x240.raw").read_bytes()[:32 * 24]
     for layout in ("GREY:32x24", "Y10:16x24", "Y10P:32x12:64", "YUYV:16x24", "UYVY:16x12", "NV12:32x16", "YU12:32x16",
-                   "YU12:31x15:32", "SRGGB8:32x24", "SBGGR10:16x24", "SGRBG10P:32x12:60", "GREY:65535x65535",
+                   "YU12:31x15:32", "SRGGB8:32x24", "GREY:32x24:31", "GREY:8x8:16777217", "SBGGR10:16x24", "SGRBG10P:32x12:60", "GREY:65535x65535",
                    "Y16:1x1"):
         put("raw", layout.replace(":", "-"), layout + "\n" + "")
         put("raw", layout.replace(":", "-") + "-pixels", layout.encode() + b"\n" + gray)
@@ -151,9 +151,13 @@ def maps():
              "segments": [{"code": "1010", "complete": False, "cms": [{"id": 4, "center": [1, 2]}]},
                           {"cms": [{"id": -9, "center": [3, 2]}]}]}
     put("map", "own-loose", json.dumps(loose).replace("center", "centre"))
-    entry = {"idcm_decimal": "5", "x": 1.5, "y": 2, "idtm": "101", "n_tm": "1", "largura": 6, "altura": 4}
+    entry = {"idcm_decimal": 5, "x": 1.5, "y": 2, "idtm": "101", "n_tm": "1", "largura": 6, "altura": 4}
     entries = [{**entry, "idcm_decimal": sign * (5 + i), "x": 1 + 0.2 * i} for i, sign in enumerate((1, -1, 1))]
     put("map", "inventors", json.dumps(entries))
+    for length in (64, 65, 90):
+        put("map", f"inventors-code-{length}", json.dumps([{**entry, "idtm": length * "1"}]))
+    twice = [{"cms": [{"id": 4, "centre": [1, 2]}]}, {"cms": [{"id": 4, "centre": [2, 2]}]}]
+    put("map", "own-twice", json.dumps({**loose, "segments": twice}))
     put("map", "inventors-alone", json.dumps([{"idcm_decimal": 9, "x": 0, "y": 0, "idtm": " ", "n_tm": ""}]))
 
 
@@ -162,6 +166,7 @@ def plans():
     put("plan", "data", json.dumps(plan))
     line = {"from_m": [0.1, 0.1], "to_m": [2, 0.1]}
     put("plan", "small", json.dumps({"room_m": [3, 3], "module_mm": 2, "lines": [line]}))
+    put("plan", "short", json.dumps({"room_m": [3, 3], "module_mm": 100, "lines": [line]}))
     put("plan", "all-keys", json.dumps({
         "$schema": "s", "room_m": [9, 9], "module_mm": 4, "tape_height_mm": 28, "first_id": 70, "tm_cms": 4,
         "tm_cms_max": 8, "camera_upright": True, "background": "floor.png", "on": "floor",
@@ -194,10 +199,13 @@ def strings_in(*sources):
 
 
 def command_lines():
-    decode = ["walk.y4m", "--raw GREY:320x240 a.raw", "--format csv --min-confidence 0.5 a", "--help", "-",
-              "--map map.json --annotate out a.png b.png", "--light-on-dark --roll 90 --id-max 7 a"]
+    decode = ["walk.y4m", "--raw GREY:320x240 a.raw", "--format csv --confidence-min 0.5 a", "--help", "-",
+              "--map map.json --annotate out a.png b.png", "--inverted --roll 90 --max-id 7 a",
+              "--vote-min 0.4 a", "--vote-min 0.5 a", "--roll 361 a", "--budget 4294967296 a", "--max-id 1505583 a",
+              "--confidence-min 1.5 a", "--confidence-min nan a"]
     make = ["plan.json -o out", "--cms 6 -o out --paper roll --svg --png 300", "--line 3.5m -o o --height 45mm",
-            "plan.json -o out --only 17..20,5 --scale 100.3% --no-labels", "--cms 9 -o o --tm-cms 4 --tm-cms-max 9"]
+            "plan.json -o out --only 17..20,5 --scale 100.3% --no-labels", "--cms 9 -o o --tm-cms 4 --tm-cms-max 9",
+            "--cms 9 -o o --tm-cms 9 --tm-cms-max 8", "--line 0m -o o", "--cms 0 -o o", "--cms 6 -o o --png 1e9"]
     render = ["--ids 7,-8,9 --distance 2m --yaw 30 -o tape.png --truth tape.jsonl",
               "--picture aruco.png:60mm:7 --distance 2m -o aruco.png",
               "--map map.json --camera 1.5,2,1.4,-90,-20 -o room.png --box 1,1,1,1,1,5 --cover 1,2,3,4",
@@ -254,9 +262,13 @@ def lines():
     commands = [("PING", "", "hello"), ("VERSION", "", ""), ("GET", "exposure", ""), ("GET", "roi", ""),
                 ("SET", "exposure", "500"), ("SET", "exposure", "auto"), ("SET", "gain", "250"), ("SET", "rate", "max"),
                 ("SET", "rate", "305"), ("SET", "encoding", "cobs"), ("SET", "roi", "64x48+8+8"),
-                ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""), ("GET", "encoding", "")]
+                ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""), ("GET", "encoding", ""),
+                ("SET", "roi", "65535x65535+65535+65535"), ("SET", "roi", "9x9+2147483640+0"),
+                ("SET", "roi", "100x400+300+300"), ("SET", "roi", "600x10+300+0"), ("SET", "gain", "65536"), ("SET", "exposure", "10000001")]
     for number, words in enumerate(commands):
         put("control", f"{number:02}-{words[0]}-{words[1]}", command(number, *words))
+        # Of an even and of an odd size: the target takes that for whether there was a picture.
+        put("control", f"{number:02}-{words[0]}-{words[1]}-more", command(number, *words) + b"\n")
     put("control", "all", b"".join(command(7 * i, *words) for i, words in enumerate(commands)))
     for number, record in enumerate(vectors("packet")):
         if number % 4 == 0:
@@ -281,8 +293,8 @@ def paths():
 
 def drivers():
     chance = random.Random(9)
-    for number in range(24):
-        put("v4l2", f"any-{number}", chance.randbytes(20 + 10 * number))
+    for number in range(64):
+        put("v4l2", f"any-{number}", chance.randbytes(40 + 10 * number))
     put("v4l2", "plain", bytes(64))
 
 

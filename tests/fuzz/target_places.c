@@ -71,9 +71,9 @@ static tapemark_map read_table(byte_script *script, table_arrays *arrays)
     return map;
 }
 
-static void read_code(byte_script *script, char code[TAPEMARK_TM_MAX_CMS + 1])
+static void read_code(byte_script *script, char *code, size_t most)
 {
-    const size_t length = script_byte(script) % (TAPEMARK_TM_MAX_CMS + 1);
+    const size_t length = script_byte(script) % (most + 1);
     for (size_t i = 0; i < length; i++)
         code[i] = "01\0x"[script_byte(script) % 64 < 62 ? script_byte(script) % 2 : script_byte(script) % 4];
     code[length] = '\0';
@@ -82,14 +82,14 @@ static void read_code(byte_script *script, char code[TAPEMARK_TM_MAX_CMS + 1])
 static void look_up(byte_script *script, const tapemark_map *map, bool in_order)
 {
     size_t index = SIZE_MAX;
-    char code[TAPEMARK_TM_MAX_CMS + 1];
+    char code[TAPEMARK_MAP_CODE_MAX + 9];
     const int32_t id = script_byte(script) % 4 == 0 ? script_i32(script) : script_within(script, -40, 40);
     tapemark_status status = tapemark_map_find_cm(map, id, &index);
     if (status == TAPEMARK_OK)
         CLAIM(index < map->cm_count && map->ids[index] == id);
     for (size_t i = 0; in_order && i < map->cm_count; i++)
         CLAIM(map->ids[i] != id || (status == TAPEMARK_OK && index == i));
-    read_code(script, code);
+    read_code(script, code, sizeof code - 1);
     index = SIZE_MAX;
     status = tapemark_map_find_tm(map, code, script_byte(script) % 2, &index);
     CLAIM(status == TAPEMARK_OK ? index < map->tm_count : index == SIZE_MAX);
@@ -102,7 +102,7 @@ static void locate(byte_script *script, const tapemark_map *map)
     tapemark_tm *tms = exact_memory(sizeof *tms);
     tapemark_result result = {.cms = cms, .cm_count = script_byte(script) % READ_MAX, .tms = tms, .tm_count = 1};
     tapemark_tm_place place = {TAPEMARK_AGREES, -1, false};
-    read_code(script, tms->code);
+    read_code(script, tms->code, TAPEMARK_TM_MAX_CMS);
     tms->length = (uint8_t)strlen(tms->code);
     tms->directed = script_byte(script) % 2;
     for (size_t i = 0; i < result.cm_count; i++)
