@@ -48,8 +48,9 @@ fuzz()
         -artifact_prefix="$found/" -print_final_stats=1 >"$output" 2>&1
     end=$?
     times >"$output.times"
-    echo "$(date +%FT%T) $target $(processor_seconds "$output.times") $(last_number number_of_executed_units: "$output")" \
-        "$(last_number cov: "$output") $(last_number ft: "$output") $end" >>"$folder/log"
+    echo "$(date +%FT%T) $target $(processor_seconds "$output.times")" \
+        "$(last_number number_of_executed_units: "$output") $(last_number cov: "$output")" \
+        "$(last_number ft: "$output") $end" >>"$folder/log"
 )
 
 report()
