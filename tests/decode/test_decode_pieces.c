@@ -116,7 +116,8 @@ static void bars_covered_in_part_are_bars(void **state)
     for (int covered_px = 2; covered_px <= 26; covered_px += 2) {
         one_tape all = place_tape(scene_default(640, 160), first_ids, 5, true, (scene_pose){.px_per_module = 4});
         /* The tape is 28 px high and 592 px long with its bars; the last of them are covered from below. */
-        const scene_cover cover = {.x_px = 604, .y_px = 94, .width_px = 64, .height_px = 2 * covered_px, .shade = 235};
+        const scene_cover cover = {
+            .x_px = 604, .y_px = 94, .width_px = 64, .height_px = 2 * covered_px, .shade = 235};
         all.view.covers = &cover;
         all.view.cover_count = 1;
         const decoding *got = decode_tape(&all, NULL, "bars covered in part");
@@ -128,6 +129,23 @@ static void bars_covered_in_part_are_bars(void **state)
             assert_int_equal(got->result.tm_count, 0);
         }
     }
+}
+
+/* Something dark on a light CM and the gaps at its ends makes no dark CM of it. */
+static void a_covered_block_is_not_taken_for_a_dark_one(void **state)
+{
+    (void)state;
+    static const double sizes_px[] = {1.4, 1.8, 2.2};
+    for (size_t i = 0; i < COUNT_OF(sizes_px); i++)
+        for (int cm = 0; cm < 2; cm++) {
+            const double px = sizes_px[i];
+            one_tape all = place_tape(scene_default(420, 100), first_ids, 5, true, (scene_pose){.px_per_module = px});
+            const scene_cover cover = {.x_px = 210 + (cm - 2) * 25 * px, .y_px = 50, .width_px = 20 * px,
+                                       .height_px = 6.5 * px, .shade = 70};
+            all.view.covers = &cover;
+            all.view.cover_count = 1;
+            assert_nothing_wrong(decode_tape(&all, NULL, "a covered block"), &all.view);
+        }
 }
 
 static void ids_need_not_ascend(void **state)
@@ -253,6 +271,7 @@ int main(void)
         cmocka_unit_test(a_covered_cm_is_a_gap_and_no_wrong_id),
         cmocka_unit_test(half_a_tape_is_no_wrong_id),
         cmocka_unit_test(bars_covered_in_part_are_bars),
+        cmocka_unit_test(a_covered_block_is_not_taken_for_a_dark_one),
         cmocka_unit_test(ids_need_not_ascend),
         cmocka_unit_test(segments_without_bars_are_no_tms),
         cmocka_unit_test(gratings_are_no_bars),

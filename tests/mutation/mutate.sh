@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: mutate.sh [PATTERN]
-# Breaks the library one line after the other, as mutations.txt tells (with a pattern, only where the file's name or the
-# line matches it), and runs the tests until one fails. Prints for each what noticed it. Fails when none did, or when a
-# line is no longer there. Takes a copy of the source tree, and some ten minutes.
+# Breaks the library one line after the other, as mutations.txt tells (with a pattern, only where the file's name or
+# the line matches it), and runs the tests until one fails. Prints for each what noticed it. Fails when none did, or
+# when a line is no longer there. Takes a copy of the source tree, and some ten minutes.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 pattern=${1:-.}
@@ -21,7 +21,8 @@ cp -R "$source/apps/render" "$copy/apps"
 cp -R "$copy/lib" "$work"
 
 cmake -G Ninja -S "$copy" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTAPEMARK_BUILD_PROGRAMS=OFF \
-    -DCMAKE_COMPILE_WARNING_AS_ERROR=OFF >"$work/log"
+    -DCMAKE_COMPILE_WARNING_AS_ERROR=OFF \
+    -DCMAKE_C_FLAGS="-fsanitize=alignment,bounds -fno-sanitize-recover=all" >"$work/log"
 parts="tests/unit/all tests/link/all tests/decode/all"
 # shellcheck disable=SC2086 # words of $parts are targets
 cmake --build "$build" --target $parts >"$work/log" || { cat "$work/log"; exit 1; }
