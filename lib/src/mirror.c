@@ -6,6 +6,9 @@
  * 0.1 to 0.4, down to 0.6 px a module. */
 static const float mirrored_min = 0.05f;
 
+/* So many CMs tell. */
+enum { CMS_MAX = 4 };
+
 static float fit(const tmi_cells *cells)
 {
     tmi_cells upright = *cells, turned = *cells;
@@ -27,7 +30,8 @@ static void mirror(tmi_cells *cells)
 bool tmi_is_mirrored(const tmi_reader *reader, const tmi_segment *segment, int first, int count)
 {
     float better = 0;
-    for (int cm = first; cm < first + count; cm++) {
+    const int looked_at = count < CMS_MAX ? count : CMS_MAX;
+    for (int cm = first; cm < first + looked_at; cm++) {
         tmi_cells cells;
         if (!tmi_marker_sample(reader->view, &segment->maps[cm], reader->config->contrast_min, &cells,
                                &reader->result->stats.work))
@@ -37,5 +41,5 @@ bool tmi_is_mirrored(const tmi_reader *reader, const tmi_segment *segment, int f
         mirror(&cells);
         better += fit(&cells);
     }
-    return better > mirrored_min * (float)count;
+    return better > mirrored_min * (float)looked_at;
 }

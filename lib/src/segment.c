@@ -2,6 +2,7 @@
 
 #include "bars.h"
 #include "judgement.h"
+#include "mirror.h"
 #include "real.h"
 #include "report.h"
 #include "sequence.h"
@@ -148,8 +149,10 @@ static void read_part(const tmi_reader *reader, tmi_segment *segment, int first,
         return;
     tapemark_reject reasons[TAPEMARK_TM_MAX_CMS];
     float evidence = tmi_turn_evidence(segment, first, count);
-    if (tmi_judge(reader, segment, first, count, evidence, reasons) < count &&
-        tmi_looks_like_tape(segment, first, count)) {
+    const int believed = tmi_judge(reader, segment, first, count, evidence, reasons);
+    /* A reflection must not take the work that the tape beside it needs. */
+    if (believed < count && tmi_looks_like_tape(segment, first, count) &&
+        (believed > 0 || !tmi_is_mirrored(reader, segment, first, count))) {
         read_again(reader, segment, first, count, reasons);
         evidence = tmi_turn_evidence(segment, first, count);
         if (tmi_judge(reader, segment, first, count, evidence, reasons) < count && real_abs(evidence) >= tmi_turn_min)
