@@ -36,6 +36,13 @@ def decoder_scripts():
     chance = random.Random(7)
     put("decode_tape", "plain", bytes(9))
     put("decode_tape", "far", bytes(9) + b"\0\0\0" + bytes([4, 5, 0, 9]) + bytes(40))
+    # One tape that nothing is done to: its ids and signs; scale, angle, height and slant as tape_sketch.c takes them.
+    for number, (first, lights, scale, angle, height, slant) in enumerate([
+            (5, 1, 0, 0, 0, 0), (200, 2, 0, 128, 0, 0), (7, 6, 60, 0, 0, 0), (7, 4, 120, 4, 0, 10),
+            (40, 3, 30, 0, 80, 0), (90, 5, 150, 0, 0, 0), (0, 1, 180, 128, 0, 0), (250, 3, 20, 2, 40, 5)]):
+        tape = bytes([0, 0, first, lights, 0, scale, 0, angle, 0, height, 0, 0, slant, 0, 0])
+        put("decode_tape", f"whole-{number}", bytes(9) + bytes(3) + tape)
+    put("decode_tape", "id-max", bytes([0, 16, 0, 0, 2]) + bytes(6) + bytes(3) + bytes([0, 0, 5, 7, 0]))
     for number in range(48):
         length = chance.choice([24, 40, 60, 90, 140, 200])
         # Half of them with a call that says nothing unusual.
@@ -54,7 +61,8 @@ def decoder_scripts():
 def raw_captures():
     gray = (data / "frame-grey-320x240.raw").read_bytes()[:32 * 24]
     for layout in ("GREY:32x24", "Y10:16x24", "Y10P:32x12:64", "YUYV:16x24", "UYVY:16x12", "NV12:32x16", "YU12:32x16",
-                   "YU12:31x15:32", "SRGGB8:32x24", "GREY:32x24:31", "GREY:8x8:16777217", "SBGGR10:16x24", "SGRBG10P:32x12:60", "GREY:65535x65535",
+                   "YU12:31x15:32", "SRGGB8:32x24", "GREY:32x24:31", "GREY:8x8:16777217", "SBGGR10:16x24",
+                   "SGRBG10P:32x12:60", "GREY:65535x65535",
                    "Y16:1x1"):
         put("raw", layout.replace(":", "-"), layout + "\n" + "")
         put("raw", layout.replace(":", "-") + "-pixels", layout.encode() + b"\n" + gray)
@@ -178,9 +186,11 @@ def configurations():
     put("config", "all", "camera = v4l2:/dev/video0\nserial = /dev/ttyAMA0:115200\nencoding = nmea\n"
         "format = GREY\nsize = 640x480\nrate = 29.97\nexposure = 2000\ngain = 3\nroi = 64x48+8+8\npreview = 8080\n"
         "markers = 9\nrepeat = yes\nrecord = a.y4m\nmap = map.json\nconfidence-min = 0.5\n")
-    put("config", "outputs", "\xef\xbb\xbfoutput = udp:127.0.0.1:9000\r\n# comment\r\ngpio-seen = gpiochip0:17:low\r\n"
+    put("config", "outputs", "\xef\xbb\xbfoutput = udp:127.0.0.1:9000\r\n"
+        "# comment\r\ngpio-seen = gpiochip0:17:low\r\n"
         .encode("latin-1"))
-    put("config", "words", "--camera\nfile:walk.y4m@max\n--roi=8x8+0+0\n--gpio-trigger\n0:GPIO17:pull-up\n--snapshots=.\n--rate\nmax\n")
+    put("config", "words", "--camera\nfile:walk.y4m@max\n--roi=8x8+0+0\n"
+        "--gpio-trigger\n0:GPIO17:pull-up\n--snapshots=.\n--rate\nmax\n")
     put("config", "words-list", "--list\n")
 
 
@@ -218,8 +228,10 @@ def command_lines():
     put_words("decode_options", formats + options_in("apps/decode/options.c") + strings_in("apps/decode/options.c"))
     put_words("make_options", options_in("apps/make/make_options.c") + strings_in("apps/make/make_options.c"))
     put_words("render_options", options_in("apps/render/render_help.c") + formats +
-              strings_in("apps/render/render_choices.c", "apps/render/render_options.c", "apps/render/thing_options.c"))
-    settings = strings_in("apps/stream/settings.c", "platform/record_sink.c", "platform/gpio_lines.c", "platform/camera.c")
+              strings_in("apps/render/render_choices.c", "apps/render/render_options.c",
+                         "apps/render/thing_options.c"))
+    settings = strings_in("apps/stream/settings.c", "platform/record_sink.c", "platform/gpio_lines.c",
+                          "platform/camera.c")
     put_words("config", settings + ["--" + word for word in settings] + formats)
     put_words("control", strings_in("apps/stream/commands.c", "apps/stream/settings.c") + ["$PTMKQ,"])
     put_words("raw", formats)
@@ -264,7 +276,8 @@ def lines():
                 ("SET", "rate", "305"), ("SET", "encoding", "cobs"), ("SET", "roi", "64x48+8+8"),
                 ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""), ("GET", "encoding", ""),
                 ("SET", "roi", "65535x65535+65535+65535"), ("SET", "roi", "9x9+2147483640+0"),
-                ("SET", "roi", "100x400+300+300"), ("SET", "roi", "600x10+300+0"), ("SET", "gain", "65536"), ("SET", "exposure", "10000001")]
+                ("SET", "roi", "100x400+300+300"), ("SET", "roi", "600x10+300+0"), ("SET", "gain", "65536"),
+                ("SET", "exposure", "10000001")]
     for number, words in enumerate(commands):
         put("control", f"{number:02}-{words[0]}-{words[1]}", command(number, *words))
         # Of an even and of an odd size: the target takes that for whether there was a picture.
