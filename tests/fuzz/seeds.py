@@ -272,8 +272,8 @@ def lines():
             put("receiver", f"{kind}-{number}", record)
     put("receiver", "both", b"".join(vectors("sentence")) + b"".join(vectors("packet")))
     commands = [("PING", "", "hello"), ("VERSION", "", ""), ("GET", "exposure", ""), ("GET", "roi", ""),
-                ("SET", "exposure", "500"), ("SET", "exposure", "auto"), ("SET", "gain", "250"), ("SET", "rate", "max"),
-                ("SET", "rate", "305"), ("SET", "encoding", "cobs"), ("SET", "roi", "64x48+8+8"),
+                ("SET", "exposure", "500"), ("SET", "exposure", "auto"), ("SET", "gain", "250"),
+                ("SET", "rate", "max"), ("SET", "rate", "305"), ("SET", "encoding", "cobs"), ("SET", "roi", "64x48+8+8"),
                 ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""), ("GET", "encoding", ""),
                 ("SET", "roi", "65535x65535+65535+65535"), ("SET", "roi", "9x9+2147483640+0"),
                 ("SET", "roi", "100x400+300+300"), ("SET", "roi", "600x10+300+0"), ("SET", "gain", "65536"),
@@ -291,7 +291,8 @@ def lines():
 def requests():
     for number, (first, headers) in enumerate([
             ("GET / HTTP/1.1", "Host: 127.0.0.1:8080\r\n"), ("GET /stream HTTP/1.0", ""),
-            ("HEAD /frame.jpg HTTP/1.1", "Host: localhost\r\n"), ("GET /frame.jpg?1 HTTP/1.1", "Host: [::1]:8080\r\n"),
+            ("HEAD /frame.jpg HTTP/1.1", "Host: localhost\r\n"),
+            ("GET /frame.jpg?1 HTTP/1.1", "Host: [::1]:8080\r\n"),
             ("POST / HTTP/1.1", ""), ("GET /../etc HTTP/1.1", "Host: example.org\r\n"),
             ("GET / HTTP/1.1", "User-Agent: " + 5000 * "x" + "\r\n")]):
         for piece in (0, 255):
