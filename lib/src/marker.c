@@ -138,18 +138,30 @@ bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tm
 
 /* ---- Sampling ---------------------------------------------------------------------------------------- */
 
-/* How finely a module is sampled: points a side, and how far from each other, in modules. */
+/* A module is sampled at four points, as far from each other as this, in modules; and whether all that is sampled of
+ * a CM lies well within the image. */
 typedef struct raster {
-    int points;
     float spacing;
+    bool inside;
 } raster;
 
-static raster raster_for(const tmi_homography *map)
+static bool is_inside(const tmi_view *view, const tmi_homography *map)
+{
+    static const tmi_point corners[4] = {{-4, -4}, {PITCH + 4, -4}, {PITCH + 4, 4}, {-4, 4}};
+    for (int i = 0; i < 4; i++) {
+        const tmi_point at = tmi_project(map, corners[i].x, corners[i].y);
+        if (!(at.x > 1 && at.y > 1 && at.x < (float)(view->width - 2) && at.y < (float)(view->height - 2)))
+            return false;
+    }
+    return true;
+}
+
+static raster raster_for(const tmi_view *view, const tmi_homography *map)
 {
     const tmi_point a = tmi_project(map, 12, 0), b = tmi_project(map, 13, 0), c = tmi_project(map, 12, 1);
     const float along = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
     const float across = (c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y);
-    return along < 16 || across < 16 ? (raster){2, 0.4f} : (raster){3, 0.25f};
+    return (raster){along < 16 || across < 16 ? 0.4f : 0.45f, is_inside(view, map)};
 }
 
 /* Modules that words need to be told from each other, px. */
@@ -163,18 +175,44 @@ static bool is_narrow(const tmi_homography *map)
     return real_min(along, across) < words_px * words_px;
 }
 
+/* Steps of 1/256 px, negative ones as what they are modulo 2^32. */
+static uint32_t steps_of(float px)
+{
+    return (uint32_t)(int32_t)(px * TMI_STEPS_PER_PX);
+}
+
+/* Mean gray of four points, all within the image: from the first one on, and from one to the next. */
+static float mean_inside(const tmi_view *view, tmi_point first, tmi_point along, tmi_point across)
+{
+    const uint32_t x = steps_of(first.x), y = steps_of(first.y);
+    const uint32_t along_x = steps_of(along.x), along_y = steps_of(along.y);
+    const uint32_t across_x = steps_of(across.x), across_y = steps_of(across.y);
+    return tmi_gray(view,
+                    tmi_interpolate(view, x, y) + tmi_interpolate(view, x + along_x, y + along_y) +
+                        tmi_interpolate(view, x + across_x, y + across_y) +
+                        tmi_interpolate(view, x + along_x + across_x, y + along_y + across_y),
+                    4);
+}
+
+static float mean_anywhere(const tmi_view *view, tmi_point first, tmi_point along, tmi_point across)
+{
+    const tmi_point last = {first.x + across.x, first.y + across.y};
+    return 0.25f * (tmi_sample(view, first.x, first.y) + tmi_sample(view, first.x + along.x, first.y + along.y) +
+                    tmi_sample(view, last.x, last.y) + tmi_sample(view, last.x + along.x, last.y + along.y));
+}
+
+/* Mean gray of a module. Within it, perspective says nothing. */
 static float sample_module(const tmi_view *view, const tmi_homography *map, raster r, float u, float v,
                            uint32_t *reads)
 {
-    const float first = -0.5f * r.spacing * (float)(r.points - 1);
-    float sum = 0;
-    for (int j = 0; j < r.points; j++)
-        for (int i = 0; i < r.points; i++) {
-            const tmi_point at = tmi_project(map, u + first + r.spacing * (float)i, v + first + r.spacing * (float)j);
-            sum += tmi_sample(view, at.x, at.y);
-        }
-    *reads += (uint32_t)(r.points * r.points);
-    return sum / (float)(r.points * r.points);
+    const float *h = map->h;
+    const float w = 1 / (h[6] * u + h[7] * v + 1), step = r.spacing * w;
+    const tmi_point middle = {(h[0] * u + h[1] * v + h[2]) * w, (h[3] * u + h[4] * v + h[5]) * w};
+    const tmi_point along = {(h[0] - middle.x * h[6]) * step, (h[3] - middle.y * h[6]) * step};
+    const tmi_point across = {(h[1] - middle.x * h[7]) * step, (h[4] - middle.y * h[7]) * step};
+    const tmi_point first = {middle.x - 0.5f * (along.x + across.x), middle.y - 0.5f * (along.y + across.y)};
+    *reads += 4;
+    return r.inside ? mean_inside(view, first, along, across) : mean_anywhere(view, first, along, across);
 }
 
 /* ---- Light and blur ---------------------------------------------------------------------------------- */
@@ -298,7 +336,7 @@ void tmi_marker_glance(const tmi_view *view, const tmi_homography *map, const tm
 bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float contrast_min, tmi_cells *cells,
                        uint32_t *reads)
 {
-    const raster r = raster_for(map);
+    const raster r = raster_for(view, map);
     levels left, right;
     if (!fit_levels(view, map, r, 0, &left, reads) || !fit_levels(view, map, r, PITCH, &right, reads))
         return false;

@@ -11,7 +11,7 @@ static inline float real_sqrt(float x)
 
 static inline float real_abs(float x)
 {
-    return x < 0 ? -x : x;
+    return __builtin_fabsf(x);
 }
 
 static inline float real_max(float a, float b)

@@ -22,22 +22,37 @@ typedef struct tmi_view {
 /* Images below this size, either way, hold no marker; the decoder returns before it samples any. */
 enum { TMI_SMALLEST_SIDE = 8 };
 
-/* Bilinear interpolation; outside of the image the border pixels go on. */
+/* Places are interpolated between pixels in steps of 1/256 px. */
+enum { TMI_STEPS_PER_PX = 256 };
+
+/* Bilinear interpolation at a place in steps, whole pixel and the next ones within the image; 65536 times the gray. */
+static inline int32_t tmi_interpolate(const tmi_view *view, uint32_t x_steps, uint32_t y_steps)
+{
+    const int32_t part_x = (int32_t)(x_steps % TMI_STEPS_PER_PX), part_y = (int32_t)(y_steps % TMI_STEPS_PER_PX);
+    const uint8_t *p =
+        view->pixels + (ptrdiff_t)(y_steps / TMI_STEPS_PER_PX) * view->stride + x_steps / TMI_STEPS_PER_PX;
+    const uint8_t *q = p + view->stride;
+    const int32_t top = TMI_STEPS_PER_PX * p[0] + part_x * (p[1] - p[0]);
+    const int32_t low = TMI_STEPS_PER_PX * q[0] + part_x * (q[1] - q[0]);
+    return TMI_STEPS_PER_PX * top + part_y * (low - top);
+}
+
+/* The gray value that is the mean of so many interpolated ones. */
+static inline float tmi_gray(const tmi_view *view, int32_t sum, int count)
+{
+    return view->sign * (float)sum * (1 / (65536.0f * (float)count)) + view->offset;
+}
+
+/* Bilinear interpolation anywhere; outside of the image the border pixels go on. */
 static inline float tmi_sample(const tmi_view *view, float x, float y)
 {
-    const float right = (float)(view->width - 1), bottom = (float)(view->height - 1);
+    const float last = 1 - 1.0f / TMI_STEPS_PER_PX; /* of the way from the last pixel but one to the last */
+    const float right = (float)(view->width - 2) + last, bottom = (float)(view->height - 2) + last;
     x = x > 0 ? x : 0; /* a NaN ends up as 0 */
     y = y > 0 ? y : 0;
     x = x < right ? x : right;
     y = y < bottom ? y : bottom;
-    int32_t column = (int32_t)x, row = (int32_t)y;
-    column = column < view->width - 2 ? column : view->width - 2; /* the last pixel is the right one of its pair */
-    row = row < view->height - 2 ? row : view->height - 2;
-    const float fx = x - (float)column, fy = y - (float)row;
-    const uint8_t *p = view->pixels + row * view->stride + column, *q = p + view->stride;
-    const float top = (float)p[0] + fx * (float)(p[1] - p[0]);
-    const float low = (float)q[0] + fx * (float)(q[1] - q[0]);
-    return view->sign * (top + fy * (low - top)) + view->offset;
+    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(256 * x), (uint32_t)(int32_t)(256 * y)), 1);
 }
 
 #endif
