@@ -251,6 +251,15 @@ static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config
     scan_lines(&w->tape, &w->strokes, &tiles, scan_work);
     w->tape.work_max = part_of(config->work_budget, GROW_PERCENT);
     tmi_tape_link(&w->tape);
+    tmi_tape_drop_strokes(&w->tape, &w->strokes);
+}
+
+/* Cells are kept where there is room for more finders than there are. */
+static void keep_cells(tmi_reader *reader, tmi_tape *tape)
+{
+    _Static_assert(_Alignof(tmi_cells) <= _Alignof(tmi_node), "cells lie where nodes may");
+    reader->kept = (tmi_cells *)(void *)&tape->nodes[tape->count];
+    reader->kept_max = (int)((size_t)(TMI_MAX_FINDERS - tape->count) * sizeof(tmi_node) / sizeof(tmi_cells));
 }
 
 static void report_finders(const tmi_tape *tape, tapemark_result *result)
@@ -296,11 +305,12 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     find_tapes(w, &view, &settings, &result->stats);
     report_finders(&w->tape, result);
 
-    const tmi_reader reader = {.view = &view,
+    tmi_reader reader = {.view = &view,
                                .config = &settings,
                                .result = result,
                                .words = {settings.id_max, settings.known_ids, settings.known_id_count},
                                .upright = real_direction(settings.roll_deg)};
+    keep_cells(&reader, &w->tape);
     tmi_rows rows = {0};
     int kept = 0, finders;
     while ((finders = tmi_tape_next_chain(&w->tape, &rows, kept, w->segment.finders)) > 0) {
@@ -309,6 +319,7 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     }
     if (w->strokes.overflow)
         result->stats.limits |= TAPEMARK_LIMIT_CANDIDATES;
+    reader.kept_max = 0;
     tmi_far_read(&reader, &w->strokes, &w->far);
     return status_of(result);
 }

@@ -31,21 +31,31 @@ void tmi_cells_turn(tmi_cells *cells)
 
 /* ---- Expected cells --------------------------------------------------------------------------------- */
 
-void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
+/* Cells as the blur shows them. All around the coding region there is nothing to blur into it. */
+static void blur(const tmi_cells *leaks, const float in[CELLS], float out[CELLS])
 {
-    float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape; above and below it is light */
-    const float a = cells->leak_along, c = cells->leak_across;
+    float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape */
+    const float a = leaks->leak_along, c = leaks->leak_across;
     for (int row = 0; row < ROWS; row++) {
-        float modules[COLUMNS + 2] = {0};
+        float padded[COLUMNS + 2] = {0};
         for (int column = 0; column < COLUMNS; column++)
-            modules[column + 1] = (float)(rows[row] >> (COLUMNS - 1 - column) & 1);
+            padded[column + 1] = in[row * COLUMNS + column];
         for (int column = 0; column < COLUMNS; column++)
-            lines[row + 1][column] = (1 - 2 * a) * modules[column + 1] + a * (modules[column] + modules[column + 2]);
+            lines[row + 1][column] = (1 - 2 * a) * padded[column + 1] + a * (padded[column] + padded[column + 2]);
     }
     for (int row = 0; row < ROWS; row++)
         for (int column = 0; column < COLUMNS; column++)
             out[row * COLUMNS + column] =
                 (1 - 2 * c) * lines[row + 1][column] + c * (lines[row][column] + lines[row + 2][column]);
+}
+
+void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
+{
+    float modules[CELLS];
+    for (int row = 0; row < ROWS; row++)
+        for (int column = 0; column < COLUMNS; column++)
+            modules[row * COLUMNS + column] = (float)(rows[row] >> (COLUMNS - 1 - column) & 1);
+    blur(cells, modules, out);
 }
 
 static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
@@ -54,22 +64,6 @@ static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
     for (int row = 0; row < ROWS; row++)
         rows[row] = dark ? (uint16_t)~tmi_light_rows[row] : tmi_dark_rows[row];
     tmi_cells_draw(cells, rows, out);
-}
-
-static tmi_bump measure_bump(const tmi_cells *cells, const float *blank, int cell)
-{
-    const float along[3] = {cells->leak_along, 1 - 2 * cells->leak_along, cells->leak_along};
-    const float across[3] = {cells->leak_across, 1 - 2 * cells->leak_across, cells->leak_across};
-    const int row = cell / COLUMNS, column = cell % COLUMNS;
-    tmi_bump out = {0};
-    for (int dy = row > 0 ? -1 : 0; dy <= (row < ROWS - 1 ? 1 : 0); dy++)
-        for (int dx = column > 0 ? -1 : 0; dx <= (column < COLUMNS - 1 ? 1 : 0); dx++) {
-            const float w = along[dx + 1] * across[dy + 1];
-            const int i = cell + dy * COLUMNS + dx;
-            out.on_seen += w * cells->value[i];
-            out.on_blank += w * blank[i];
-        }
-    return out;
 }
 
 /* The bits' cells lie in columns 1 to 15 and rows 0 to 5: bumps can lose their right and their upper side. */
@@ -197,47 +191,58 @@ static void sum_up(tmi_evidence *e, const tmi_cells *cells, const float *blank)
     }
 }
 
-/* Adds `amount` of a bit's bump to the cells, and returns the sum of the bump's product with them as they were. */
-static float touch_bump(const tmi_evidence *e, int bit, float amount, float cells[CELLS])
+/* Changes of amounts by less than this are none. */
+static const float amount_step = 0.004f;
+
+/* Products of each cell's bump with what the amounts so far leave of the cells, with two cells more all around. */
+enum { REACH = 2, WIDE = COLUMNS + 2 * REACH };
+typedef struct leftovers {
+    float at[(ROWS + 2 * REACH) * WIDE];
+} leftovers;
+
+/* Takes `amount` of a bit's bump off the cells: what its bump shares with those of its neighbours, off theirs. */
+static void take_off(const tmi_evidence *e, int cell, float amount, leftovers *left)
 {
-    const float along[3] = {e->leak_along, 1 - 2 * e->leak_along, e->leak_along};
-    const float across[3] = {e->leak_across, 1 - 2 * e->leak_across, e->leak_across};
-    const int cell = cell_of(bit), row = cell / COLUMNS, column = cell % COLUMNS;
-    float product = 0;
-    for (int dy = row > 0 ? -1 : 0; dy <= 1; dy++) /* no bit lies in the last row or the first column */
-        for (int dx = -1; dx <= (column < COLUMNS - 1 ? 1 : 0); dx++) {
-            const float w = along[dx + 1] * across[dy + 1];
-            product += w * cells[cell + dy * COLUMNS + dx];
-            cells[cell + dy * COLUMNS + dx] += amount * w;
-        }
-    return product;
+    const int row = cell / COLUMNS, column = cell % COLUMNS;
+    const float own_along = column == COLUMNS - 1 ? e->last_along : e->along[0];
+    const float own_across = row == 0 ? e->first_across : e->across[0];
+    const float along[2 * REACH + 1] = {e->along[2], e->along[1], own_along, e->along[1], e->along[2]};
+    const float across[2 * REACH + 1] = {e->across[2], e->across[1], own_across, e->across[1], e->across[2]};
+    float *at = left->at + row * WIDE + column;
+    for (int dy = 0; dy < 2 * REACH + 1; dy++, at += WIDE) {
+        const float part = amount * across[dy];
+        for (int dx = 0; dx < 2 * REACH + 1; dx++)
+            at[dx] -= part * along[dx];
+    }
 }
 
-/* How much of each bit is there, 0 to 1: the amounts of all bumps that together come nearest to what the cells show
- * beyond the blank word, by coordinate descent. What a one leaks into its neighbours is thus not counted for them. */
-static void amounts_of_bits(const tmi_evidence *e, const tmi_cells *cells, const float blank[CELLS],
-                            float amount[BITS])
+/* By coordinate descent, over the products of bumps, of which each shares something with few others only. */
+void tmi_evidence_amounts(const tmi_evidence *e, float amounts[TMI_BITS])
 {
-    float left[CELLS];
-    for (int i = 0; i < CELLS; i++)
-        left[i] = e->sign * (cells->value[i] - blank[i]);
-    for (int bit = 0; bit < BITS; bit++)
-        amount[bit] = 0;
+    leftovers left = {{0}};
+    for (int bit = 0; bit < BITS; bit++) {
+        const int cell = cell_of(bit);
+        left.at[(cell / COLUMNS + REACH) * WIDE + cell % COLUMNS + REACH] =
+            e->sign * (e->bumps[bit].on_seen - e->bumps[bit].on_blank);
+        amounts[bit] = 0;
+    }
     const int sweeps = e->leak_along + e->leak_across > strong_blur ? 10 : 2;
     for (int sweep = 0; sweep < sweeps; sweep++)
         for (int bit = 0; bit < BITS; bit++) {
-            const float wanted = amount[bit] + touch_bump(e, bit, 0, left) / tmi_evidence_energy(e, bit);
-            const float next = real_max(0, real_min(1, wanted)), change = next - amount[bit];
-            if (change == 0)
+            const int cell = cell_of(bit);
+            const float product = left.at[(cell / COLUMNS + REACH) * WIDE + cell % COLUMNS + REACH];
+            const float wanted = amounts[bit] + product * e->per_energy[at_top(bit)][at_right(bit)];
+            const float change = real_max(0, real_min(1, wanted)) - amounts[bit];
+            if (real_abs(change) < amount_step)
                 continue;
-            touch_bump(e, bit, -change, left);
-            amount[bit] = next;
+            take_off(e, cell, change, &left);
+            amounts[bit] += change;
         }
 }
 
 void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells)
 {
-    float blank[CELLS];
+    float blank[CELLS], seen_blurred[CELLS], blank_blurred[CELLS];
     const bool dark = mostly_dark(cells);
     *e = (tmi_evidence){
         .sign = dark ? -1.0f : 1.0f, .leak_along = cells->leak_along, .leak_across = cells->leak_across};
@@ -245,11 +250,17 @@ void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells)
     overlaps(cells->leak_across, e->across);
     e->last_along = e->along[0] - e->leak_along * e->leak_along;
     e->first_across = e->across[0] - e->leak_across * e->leak_across;
+    for (int top = 0; top < 2; top++)
+        for (int right = 0; right < 2; right++)
+            e->per_energy[top][right] =
+                1 / ((top ? e->first_across : e->across[0]) * (right ? e->last_along : e->along[0]));
     draw_blank(cells, dark, blank);
     sum_up(e, cells, blank);
+    /* A bump's product with cells is what blur makes of them in its middle. */
+    blur(cells, cells->value, seen_blurred);
+    blur(cells, blank, blank_blurred);
     for (int bit = 0; bit < BITS; bit++)
-        e->bumps[bit] = measure_bump(cells, blank, cell_of(bit));
-    amounts_of_bits(e, cells, blank, e->amounts);
+        e->bumps[bit] = (tmi_bump){seen_blurred[cell_of(bit)], blank_blurred[cell_of(bit)]};
 }
 
 /* ---- Scores ------------------------------------------------------------------------------------------ */

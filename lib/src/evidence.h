@@ -40,14 +40,18 @@ typedef struct tmi_evidence {
     float along[3], across[3];      /* overlap of two bumps that many cells apart */
     float last_along, first_across; /* of a bump with itself where the region's edge cuts it off */
     float leak_along, leak_across;
+    float per_energy[2][2]; /* one over the square of a bump: whether in the first row, and in the last column */
     float sign; /* +1: ones are dark on light; -1: zeros are light on dark */
     float seen_sum, seen_energy, blank_sum, blank_energy, seen_blank;
     tmi_bump bumps[TMI_BITS];
-    float amounts[TMI_BITS]; /* how much of each bit is there, 0 to 1 */
 } tmi_evidence;
 
 /* From cells whose scale tmi_blank_score() has adjusted. */
 void tmi_evidence_gather(tmi_evidence *e, const tmi_cells *cells);
+
+/* How much of each bit is there, 0 to 1: the amounts of all bumps that together come nearest to what the cells show
+ * beyond the blank word. What a one leaks into its neighbours is thus not counted for them. */
+void tmi_evidence_amounts(const tmi_evidence *e, float amounts[TMI_BITS]);
 
 /* Normalised correlation of the cells with the blank word in which `count` bits are changed. */
 float tmi_evidence_correlate(const tmi_evidence *e, const uint8_t *changed, unsigned count);

@@ -38,6 +38,8 @@ void tmi_segment_read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
         segment->readings[way][cm] = (tmi_reading){.id = TMI_NO_ID, .score = -1, .odds = 1};
     if (!tmi_marker_sample(reader->view, &segment->maps[cm], reader->config->contrast_min, &cells, &stats->work))
         return;
+    if (cm < reader->kept_max)
+        reader->kept[cm] = cells;
     tmi_cells turned = cells;
     tmi_cells_turn(&turned);
     const float blank[2] = {tmi_blank_score(&cells), tmi_blank_score(&turned)};
@@ -130,15 +132,37 @@ static int read_tm(const tmi_reader *reader, tmi_segment *segment, const tapemar
 
 /* ---- The segment ------------------------------------------------------------------------------------------- */
 
+/* Where a map has a CM's cells this near to where another has them, in modules, it shows nothing new. */
+static const float same_place = 0.12f;
+
+static bool shows_the_same(const tmi_homography *map, const tmi_homography *other)
+{
+    static const tmi_point corners[4] = {{5, -3}, {20, -3}, {20, 3}, {5, 3}};
+    for (int i = 0; i < 4; i++) {
+        const tmi_point at = tmi_project(map, corners[i].x, corners[i].y);
+        const tmi_point before = tmi_project(other, corners[i].x, corners[i].y);
+        const tmi_point next = tmi_project(map, corners[i].x + same_place, corners[i].y);
+        const tmi_point below = tmi_project(map, corners[i].x, corners[i].y + same_place);
+        const float moved = real_max(real_abs(at.x - before.x), real_abs(at.y - before.y));
+        if (!(moved < real_max(real_abs(next.x - at.x), real_abs(next.y - at.y)) &&
+              moved < real_max(real_abs(below.x - at.x), real_abs(below.y - at.y))))
+            return false;
+    }
+    return true;
+}
+
 /* Locates the CMs anew, all finders of the part together, and reads again those that were not believed. */
 static void read_again(const tmi_reader *reader, tmi_segment *segment, int first, int count,
                        const tapemark_reject reasons[TAPEMARK_TM_MAX_CMS])
 {
+    tmi_homography before[TAPEMARK_TM_MAX_CMS];
+    for (int cm = first; cm < first + count; cm++)
+        before[cm] = segment->maps[cm];
     if (!tmi_row_maps(reader->view, &segment->finders[first], count + 1, &segment->maps[first],
                       &reader->result->stats.work))
         return;
     for (int cm = first; cm < first + count && tmi_may_go_on(reader); cm++)
-        if (reasons[cm] != TMI_BELIEVED)
+        if (reasons[cm] != TMI_BELIEVED && !shows_the_same(&segment->maps[cm], &before[cm]))
             tmi_segment_read_cm(reader, segment, cm);
 }
 

@@ -12,6 +12,8 @@ typedef struct tmi_reader {
     tapemark_result *result;
     tmi_words words;
     tmi_point upright; /* direction in which upright tapes read, by the caller's hint; a unit vector */
+    tmi_cells *kept;   /* room for the cells of the segment's first CMs as they were read, */
+    int kept_max;      /* and of how many: of the others they are sampled again when they are needed */
 } tmi_reader;
 
 /* Memory for one segment at a time; too large for the stack of a microcontroller. */

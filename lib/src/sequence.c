@@ -43,16 +43,32 @@ static void add_guess(sequence *s, int cm, int32_t rank)
         s->guesses[s->guess_count++] = (guess){.start = start};
 }
 
-static bool sample(const sequence *s, int cm, tmi_cells *cells)
+static bool was_read(const sequence *s, int cm)
 {
-    const tmi_reader *reader = s->reader;
-    if (s->segment->readings[s->turned][cm].id == TMI_NO_ID ||
-        !tmi_marker_sample(reader->view, &s->segment->maps[cm], reader->config->contrast_min, cells,
-                           &reader->result->stats.work))
-        return false;
+    return s->segment->readings[s->turned][cm].id != TMI_NO_ID;
+}
+
+/* Turns cells the right way up, and adjusts their scale. */
+static void set_upright(const sequence *s, tmi_cells *cells)
+{
     if (s->turned)
         tmi_cells_turn(cells);
     tmi_blank_score(cells);
+}
+
+static bool sample(const sequence *s, int cm, tmi_cells *cells)
+{
+    const tmi_reader *reader = s->reader;
+    if (!was_read(s, cm))
+        return false;
+    if (cm < reader->kept_max) {
+        *cells = reader->kept[cm];
+        return true;
+    }
+    if (!tmi_marker_sample(reader->view, &s->segment->maps[cm], reader->config->contrast_min, cells,
+                           &reader->result->stats.work))
+        return false;
+    set_upright(s, cells);
     return true;
 }
 
@@ -253,6 +269,9 @@ void tmi_sequence_read(const tmi_reader *reader, tmi_segment *segment, int first
     }
     if (s.guess_count == 0 || count < 2 || !tmi_may_go_on(reader))
         return;
+    for (int cm = first; cm < first + count && cm < reader->kept_max; cm++)
+        if (was_read(&s, cm))
+            set_upright(&s, &reader->kept[cm]);
     s.is_damaged = 2 * damaged(&s) > count;
     if (s.is_damaged)
         guess_few_ones(&s);

@@ -263,6 +263,53 @@ void tmi_tape_link(tmi_tape *tape)
         tape->stats->rejects[TAPEMARK_REJECT_LONE] += is_single(&tape->nodes[i]);
 }
 
+/* ---- Strokes on the print around finders ------------------------------------------------------------------- */
+
+/* A finder without neighbours has to correlate this well with the ideal one to speak for what is around it. */
+static const float single_score = 0.8f;
+
+/* A finder's tape goes on by a CM on one side at least, and often on the other; else there are bars, modules high. */
+static const float print_length = 29, print_height = 4.5f;
+
+/* A tape whose finder is this many times as high as a stroke is wide is not of that height a CM further on. */
+static const float near_times = 2;
+
+static void drop_in_line(const tmi_finder *f, tmi_strokes *strokes)
+{
+    const float reach_x = print_length * real_abs(f->right.x) + print_height * real_abs(f->down.x);
+    const float reach_y = print_length * real_abs(f->right.y) + print_height * real_abs(f->down.y);
+    const float width_max = TAPEMARK_HEIGHT_MODULES / near_times * length(f->down);
+    int kept = 0;
+    for (int i = 0; i < strokes->count; i++) {
+        const tmi_point at = tmi_stroke_at(&strokes->at[i]);
+        if (real_abs(at.x - f->centre.x) < reach_x && real_abs(at.y - f->centre.y) < reach_y &&
+            tmi_stroke_width(&strokes->at[i]) < width_max) {
+            const tmi_point m = to_modules(f, at);
+            if (real_abs(m.x) < print_length && real_abs(m.y) < print_height)
+                continue;
+        }
+        if (kept < i)
+            strokes->at[kept] = strokes->at[i];
+        kept++;
+    }
+    strokes->count = kept;
+}
+
+void tmi_tape_drop_strokes(const tmi_tape *tape, tmi_strokes *strokes)
+{
+    for (int i = 0; i < tape->count; i++) {
+        const tmi_node *node = &tape->nodes[i];
+        const bool single = is_single(node);
+        if (single && node->finder.score < single_score)
+            continue;
+        for (int d = 0; d < 2; d++)
+            if (single || node->neighbour[d] != TMI_NONE || node->neighbour[d + 2] != TMI_NONE) {
+                const tmi_finder along = turned(&node->finder, d);
+                drop_in_line(&along, strokes);
+            }
+    }
+}
+
 /* ---- Rows -------------------------------------------------------------------------------------------------- */
 
 /* Follows the links from rows->last on, behind which the chain is filled up. A link is taken off when it is followed,

@@ -4,6 +4,7 @@
 #define TAPEMARK_TAPE_H
 
 #include "finder.h"
+#include "stroke.h"
 
 #include "tapemark.h"
 
@@ -33,6 +34,10 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder);
 
 /* Links neighbours, then looks for missing ones beyond the ends of what is linked, and around single ones. */
 void tmi_tape_link(tmi_tape *tape);
+
+/* Leaves out the strokes that belong to the print around finders: in line with them, and much narrower than they are
+ * high. To be called before the rows are asked for. */
+void tmi_tape_drop_strokes(const tmi_tape *tape, tmi_strokes *strokes);
 
 /* The way through all rows; zeroed at first. */
 typedef struct tmi_rows {

@@ -70,9 +70,11 @@ float tmi_word_score(const tmi_evidence *e, int32_t rank)
 static int pick_positions(const tmi_evidence *e, uint8_t picked[CANDIDATE_CELLS], float gains[CANDIDATE_CELLS])
 {
     int count = 0;
+    float amounts[TMI_BITS];
+    tmi_evidence_amounts(e, amounts);
     const float least = e->leak_along + e->leak_across > doubtful_blur ? doubtful_gain : hopeless_gain;
     for (int i = 0; i < TAPEMARK_DATA_BITS; i++) {
-        const float energy = tmi_evidence_energy(e, i), gain = (2 * e->amounts[i] - 1 - one_cost) * energy;
+        const float energy = tmi_evidence_energy(e, i), gain = (2 * amounts[i] - 1 - one_cost) * energy;
         if (gain < least * energy || (count == CANDIDATE_CELLS && gain <= gains[count - 1]))
             continue;
         int at = count < CANDIDATE_CELLS ? count++ : count - 1;
@@ -177,9 +179,9 @@ static float unexplained(float score)
     return real_max(1e-4f, 1 - score * real_max(0, score));
 }
 
-/* Whether the word could still come near the best one if all its checksum were right; else its checksum, which
- * costs more than all the rest, need not be computed. */
-static bool in_reach(const contest *c, const candidate *word)
+/* Whether the word could still leave no more than `odds` times what the best one does if all its checksum were
+ * right; else its checksum, which costs more than all the rest, need not be computed. */
+static bool in_reach(const contest *c, const candidate *word, float odds)
 {
     float least_error = c->blank_error - c->checksum_max;
     for (int i = 0; i < word->count; i++) {
@@ -187,7 +189,7 @@ static bool in_reach(const contest *c, const candidate *word)
         for (int j = 0; j < i; j++)
             least_error += 2 * tmi_evidence_overlap(c->e, word->positions[i], word->positions[j]);
     }
-    return least_error < (odds_max * unexplained(c->best) + 0.02f) * c->variance;
+    return least_error < (odds * unexplained(c->best) + 0.02f) * c->variance;
 }
 
 /* A lone cell of the other shade changes what is seen by the blur's peak. What is off by this part of it, and by so many
@@ -267,7 +269,7 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     for (int i = 0; i < list.count; i++) {
         const candidate *word = &list.words[i];
         const int32_t id = tmi_id_of_positions(word->positions, word->count, e.sign < 0);
-        if (id == TMI_NO_ID || !in_reach(&c, word))
+        if (id == TMI_NO_ID || !in_reach(&c, word, odds_max))
             continue;
         scores[count] = score_word(&e, word);
         *work += TMI_SCORE_WORK;
@@ -298,7 +300,8 @@ int32_t tmi_word_of_few_ones(const tmi_cells *cells, uint32_t *work)
     float gains[CANDIDATE_CELLS];
     tmi_evidence_gather(&e, cells);
     const int count = pick_positions(&e, picked, gains);
-    float best = -1;
+    contest c;
+    begin_contest(&c, &e);
     int32_t rank = 0;
     for (int i = -1; i < count; i++)
         for (int j = -1; j < i || i + j == -2; j++) {
@@ -307,10 +310,12 @@ int32_t tmi_word_of_few_ones(const tmi_cells *cells, uint32_t *work)
                 word.positions[word.count++] = picked[i];
             if (j >= 0)
                 word.positions[word.count++] = picked[j];
-            const float score = word.count == 0 && e.sign < 0 ? -1 : score_word(&e, &word);
+            if ((word.count == 0 && e.sign < 0) || !in_reach(&c, &word, 1))
+                continue;
+            const float score = score_word(&e, &word);
             *work += TMI_SCORE_WORK;
-            if (score > best) {
-                best = score;
+            if (score > c.best) {
+                c.best = score;
                 rank = tmi_id_of_positions(word.positions, word.count, false);
             }
         }
