@@ -32,7 +32,7 @@ void tmi_cells_turn(tmi_cells *cells)
 /* ---- Expected cells --------------------------------------------------------------------------------- */
 
 /* Cells as the blur shows them. All around the coding region there is nothing to blur into it. */
-static void blur(const tmi_cells *leaks, const float in[CELLS], float out[CELLS])
+TMI_ONCE static void blur(const tmi_cells *leaks, const float in[CELLS], float out[CELLS])
 {
     float lines[ROWS + 2][COLUMNS] = {{0}}; /* blurred along the tape */
     const float a = leaks->leak_along, c = leaks->leak_across;
@@ -49,7 +49,7 @@ static void blur(const tmi_cells *leaks, const float in[CELLS], float out[CELLS]
                 (1 - 2 * c) * lines[row + 1][column] + c * (lines[row][column] + lines[row + 2][column]);
 }
 
-void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
+TMI_ONCE void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
 {
     float modules[CELLS];
     for (int row = 0; row < ROWS; row++)

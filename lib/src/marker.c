@@ -202,8 +202,8 @@ static float mean_anywhere(const tmi_view *view, tmi_point first, tmi_point alon
 }
 
 /* Mean gray of a module. Within it, perspective says nothing. */
-static float sample_module(const tmi_view *view, const tmi_homography *map, raster r, float u, float v,
-                           uint32_t *reads)
+TMI_ONCE static float sample_module(const tmi_view *view, const tmi_homography *map, raster r, float u, float v,
+                                    uint32_t *reads)
 {
     const float *h = map->h;
     const float w = 1 / (h[6] * u + h[7] * v + 1), step = r.spacing * w;

@@ -4,6 +4,9 @@
 
 #include "view.h"
 
+/* Functions that compilers would copy to where they are called, at a cost in code that no speed is worth. */
+#define TMI_ONCE __attribute__((noinline))
+
 static inline float real_sqrt(float x)
 {
     return __builtin_sqrtf(x);
