@@ -14,10 +14,6 @@ static const tmi_point ray_direction[RAYS] = {
     {0, -1}, {.382683f, -.923880f},  {.707107f, -.707107f},  {.923880f, -.382683f},
 };
 
-/* Light beyond the core is noticed at 1.5 modules or somewhat later, and that beyond the dark ring at 3.5; so a ray
- * that still looks for it this many times as far out, and that many samples more, passes no rings. */
-enum { LAST_SEEN = 5, RAY_SLACK = 8 };
-
 typedef struct ray_walk {
     const tmi_view *view;
     tmi_point start, step;
@@ -40,7 +36,7 @@ static float level_passed(const float *value, int from, int to, float level)
  * proportion. */
 static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
 {
-    int extreme_at[4], found = 0, at = 0, core_end = 0; /* core, light ring, dark ring, light margin */
+    int extreme_at[4], found = 0, at = 0; /* core, light ring, dark ring, light margin */
     float edge[3];
     int i = 0;
     for (; i < RAY_SAMPLES && found < 4; i++) {
@@ -52,10 +48,7 @@ static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
         else if (seeking_light ? v < walk->value[at] - swing : v > walk->value[at] + swing) {
             extreme_at[found++] = at;
             at = i;
-            core_end = found == 1 ? i : core_end;
         }
-        if (found > 0 && i > LAST_SEEN * core_end + RAY_SLACK)
-            break;
         /* The margin need not end: three more modules of it are enough. */
         if (found == 3 && 2.33f * (float)(i - extreme_at[2]) > (float)extreme_at[2])
             extreme_at[found++] = at;
