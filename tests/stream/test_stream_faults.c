@@ -99,7 +99,7 @@ static void storm_of_hangups(void **state)
 static void each_reload_is_told_of(void **state)
 {
     (void)state;
-    enum { TIMES = 60, PICTURES = 40 };
+    enum { TIMES = 40, PICTURES = 40 };
     char folder[] = "/tmp/tapemark-stream-stills-XXXXXX", picture[100], config[100], camera[110];
     assert_non_null(mkdtemp(folder));
     snprintf(config, sizeof config, "%s/stream.conf", folder);
@@ -132,7 +132,7 @@ static void each_reload_is_told_of(void **state)
 static void messages_that_nobody_reads(void **state)
 {
     (void)state;
-    enum { ROOM_BYTES = 4096, TIMES = 150 };
+    enum { ROOM_BYTES = 4096, TIMES = 100 };
     char config[] = "/tmp/tapemark-stream-unread-XXXXXX";
     assert_int_not_equal(close(mkstemp(config)), -1);
     fill_file(config, "repeat = yes\n", 13);
