@@ -197,6 +197,10 @@ static bool in_reach(const contest *c, const candidate *word, float odds)
  * off by more than 0.6 of the peak and by that spread, and none that was flipped by less than 0.7. */
 static const float contrary_part = 0.6f, contrary_spread = 3.5f;
 
+/* But where many cells are off, that spread forgives all of them: what shows the opposite of the word as clearly as
+ * anything can, but for this part of the peak, always contradicts it. */
+static const float opposite_part = 0.25f;
+
 /* Of a Gaussian, the standard deviation in mean absolute deviations: of these few outliers change little. */
 static const float deviation = 1.25f;
 
@@ -221,6 +225,7 @@ static void count_cells(const tmi_cells *cells, tmi_reading *reading)
     const float spread = cells_off(cells, rows, off);
     const float peak = (1 - 2 * cells->leak_along) * (1 - 2 * cells->leak_across);
     const float other_shade = real_max(contrary_part * peak, contrary_spread * spread);
+    const float opposite = opposite_part * peak;
     reading->doubtful = reading->corrected = reading->contrary = 0;
     for (int i = 0; i < CELLS; i++) {
         const float value = cells->value[i];
@@ -229,7 +234,7 @@ static void count_cells(const tmi_cells *cells, tmi_reading *reading)
             reading->doubtful++;
         if (dark != (value > 0.5f))
             reading->corrected++;
-        if (off[i] > other_shade)
+        if (off[i] > other_shade || (dark ? value < opposite : value > 1 - opposite))
             reading->contrary++;
     }
 }

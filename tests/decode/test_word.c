@@ -296,6 +296,27 @@ static void a_wrong_cell_is_contrary(void **state)
             }
 }
 
+/* However many cells are off, those that are clearly the other shade contradict the word. */
+static void a_block_of_wrong_cells_is_contrary(void **state)
+{
+    (void)state;
+    int read = 0;
+    for (int columns = 6; columns <= 12; columns++)
+        for (int first = 1; first < ROWS - 3; first++) {
+            uint16_t rows[ROWS];
+            assert_int_equal(tapemark_cm_grid(0, rows), TAPEMARK_OK);
+            for (int row = first; row < first + 3; row++)
+                rows[row] = (uint16_t)(rows[row] | ((1u << columns) - 1));
+            const tmi_cells cells = cells_of_rows(rows, 0.1f, 0.1f);
+            tmi_reading reading;
+            tmi_word_read_as(&cells, &all_words, 0, &reading);
+            if (reading.id == 0)
+                assert_in_range(reading.contrary, 6, CELLS);
+            read += reading.id == 0;
+        }
+    assert_true(read > 10);
+}
+
 /* Another word's checksum: where it differs in more than a cell, nothing is believed. */
 static void a_wrong_checksum_is_not_believed(void **state)
 {
@@ -496,6 +517,7 @@ int main(void)
         cmocka_unit_test(noise_alone_is_no_word),
         cmocka_unit_test(flat_cells_are_no_word),
         cmocka_unit_test(a_wrong_cell_is_contrary),
+        cmocka_unit_test(a_block_of_wrong_cells_is_contrary),
         cmocka_unit_test(a_wrong_checksum_is_not_believed),
         cmocka_unit_test(too_many_ones_are_not_believed),
         cmocka_unit_test(cells_turned_twice_are_as_before),

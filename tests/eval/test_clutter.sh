@@ -39,9 +39,10 @@ while read -r kind numbers; do
         expect out "\"kind\":\"$kind\",\"frames\":1,"
     done
 done <<END
-finder-lattice 78 898 954 1731 734 854 1463 1778 1824 11448
+finder-lattice 78 265 898 954 1034 1731 3156 734 854 1463 1778 1824 11448
 random-cells 1655 13420 14697
 finder-carpet 1909 2313
+finder-rows 2716
 bars-and-blocks 1318 1681 2610
 END
 
