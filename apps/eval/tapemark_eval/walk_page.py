@@ -11,7 +11,8 @@ def _share(hits, all_of):
 
 
 def _percents(interval):
-    return f"{100 * interval[0]:.2g} to {100 * interval[1]:.2g} %"
+    least, most = (0 if share < 1e-9 else 100 * share for share in interval)
+    return f"{least:.2g} to {most:.2g} %"
 
 
 def _walk_rows(systems, labels):
