@@ -306,10 +306,10 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     report_finders(&w->tape, result);
 
     tmi_reader reader = {.view = &view,
-                               .config = &settings,
-                               .result = result,
-                               .words = {settings.id_max, settings.known_ids, settings.known_id_count},
-                               .upright = real_direction(settings.roll_deg)};
+                         .config = &settings,
+                         .result = result,
+                         .words = {settings.id_max, settings.known_ids, settings.known_id_count},
+                         .upright = real_direction(settings.roll_deg)};
     keep_cells(&reader, &w->tape);
     tmi_rows rows = {0};
     int kept = 0, finders;

@@ -17,8 +17,8 @@ typedef struct tmi_cells {
 /* Turns the cells by half a turn: as seen by a reader who stands on the head. */
 void tmi_cells_turn(tmi_cells *cells);
 
-/* What a print looks like under the blur of these cells; bit 15 of a row is its first column, 1 is dark. All around it
- * there is a light module. */
+/* What a print looks like under the blur of these cells; bit 15 of a row is its first column, 1 is dark. All around
+ * it there is a light module. */
 void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[TAPEMARK_CELL_ROWS], float out[TAPEMARK_CELLS]);
 
 /* Correlation with what all words share, a quick measure of whether this way up is the right one. Adjusts the

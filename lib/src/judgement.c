@@ -24,8 +24,8 @@ typedef struct standard {
     int contrary; /* that no more cells than this show the opposite of the word: dirt, or a word that is none */
 } standard;
 
-/* For a CM that stands alone. Where no cell may contradict the word, hardly anything that is no word gets through, and
- * of right CMs none is lost from 1.6 px a module on. */
+/* For a CM that stands alone. Where no cell may contradict the word, hardly anything that is no word gets through,
+ * and of right CMs none is lost from 1.6 px a module on. */
 static const standard alone = {1.6f, 0};
 /* Where the next CM of the segment is sure and its id says the same: ids ascend along a segment. */
 static const standard supported = {1.15f, 1};

@@ -156,24 +156,22 @@ static bool is_inside(const tmi_view *view, const tmi_homography *map)
     return true;
 }
 
-static raster raster_for(const tmi_view *view, const tmi_homography *map)
+/* Square of a module's narrower side, px, in the middle between the finders. */
+static float narrow_side_squared(const tmi_homography *map)
 {
     const tmi_point a = tmi_project(map, 12, 0), b = tmi_project(map, 13, 0), c = tmi_project(map, 12, 1);
     const float along = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
     const float across = (c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y);
-    return (raster){along < 16 || across < 16 ? 0.4f : 0.45f, is_inside(view, map)};
+    return real_min(along, across);
+}
+
+static raster raster_for(const tmi_view *view, const tmi_homography *map)
+{
+    return (raster){narrow_side_squared(map) < 16 ? 0.4f : 0.45f, is_inside(view, map)};
 }
 
 /* Modules that words need to be told from each other, px. */
 static const float words_px = 0.95f;
-
-static bool is_narrow(const tmi_homography *map)
-{
-    const tmi_point a = tmi_project(map, 12, 0), b = tmi_project(map, 13, 0), c = tmi_project(map, 12, 1);
-    const float along = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-    const float across = (c.x - a.x) * (c.x - a.x) + (c.y - a.y) * (c.y - a.y);
-    return real_min(along, across) < words_px * words_px;
-}
 
 /* Steps of 1/256 px, negative ones as what they are modulo 2^32. */
 static uint32_t steps_of(float px)
@@ -345,7 +343,7 @@ bool tmi_marker_sample(const tmi_view *view, const tmi_homography *map, float co
     const float depth = left.depth + right.depth, leak_max = 0.3f;
     cells->leak_along = real_min(leak_max, real_max(0, (left.leak_along + right.leak_along) / depth));
     cells->leak_across = real_min(leak_max, real_max(0, (left.leak_across + right.leak_across) / depth));
-    cells->narrow = is_narrow(map);
+    cells->narrow = narrow_side_squared(map) < words_px * words_px;
     shade edge;
     const bool shaded = find_shade(view, map, &left, &right, &edge, reads);
     const float ink = depth / (left.light + right.light); /* the part of the light that it takes */

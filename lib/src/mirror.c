@@ -2,8 +2,8 @@
 
 #include "real.h"
 
-/* What all words share fits a mirrored CM worse than its mirror image by 0.3, on average over a row, and a CM better by
- * 0.1 to 0.4, down to 0.6 px a module. */
+/* What all words share fits a mirrored CM worse than its mirror image by 0.3, on average over a row, and a CM better
+ * by 0.1 to 0.4, down to 0.6 px a module. */
 static const float mirrored_min = 0.05f;
 
 /* So many CMs tell. */

@@ -40,7 +40,8 @@ static inline int32_t tmi_interpolate(const tmi_view *view, uint32_t x_steps, ui
 /* The gray value that is the mean of so many interpolated ones. */
 static inline float tmi_gray(const tmi_view *view, int32_t sum, int count)
 {
-    return view->sign * (float)sum * (1 / (65536.0f * (float)count)) + view->offset;
+    const float scale = 1 / ((float)(TMI_STEPS_PER_PX * TMI_STEPS_PER_PX) * (float)count);
+    return view->sign * (float)sum * scale + view->offset;
 }
 
 /* Bilinear interpolation anywhere; outside of the image the border pixels go on. */
@@ -52,7 +53,8 @@ static inline float tmi_sample(const tmi_view *view, float x, float y)
     y = y > 0 ? y : 0;
     x = x < right ? x : right;
     y = y < bottom ? y : bottom;
-    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(256 * x), (uint32_t)(int32_t)(256 * y)), 1);
+    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(TMI_STEPS_PER_PX * x),
+                                          (uint32_t)(int32_t)(TMI_STEPS_PER_PX * y)), 1);
 }
 
 #endif

@@ -192,9 +192,9 @@ static bool in_reach(const contest *c, const candidate *word, float odds)
     return least_error < (odds * unexplained(c->best) + 0.02f) * c->variance;
 }
 
-/* A lone cell of the other shade changes what is seen by the blur's peak. What is off by this part of it, and by so many
- * times what cells are off by on the whole, is of the other shade. From 1.6 px a module on no cell of a right word is
- * off by more than 0.6 of the peak and by that spread, and none that was flipped by less than 0.7. */
+/* A lone cell of the other shade changes what is seen by the blur's peak. What is off by this part of it, and by so
+ * many times what cells are off by on the whole, is of the other shade. From 1.6 px a module on no cell of a right
+ * word is off by more than 0.6 of the peak and by that spread, and none that was flipped by less than 0.7. */
 static const float contrary_part = 0.6f, contrary_spread = 3.5f;
 
 /* But where many cells are off, that spread forgives all of them: what shows the opposite of the word as clearly as
