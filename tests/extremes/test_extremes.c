@@ -109,7 +109,7 @@ static void reads_a_tape_at_the_far_end_of_the_longest_frames(void **state)
     assert_int_equal(decode_frame(&wide)->result.cm_count, IDS);
     const decoding *got = decode_frame(&high);
     assert_int_equal(got->result.cm_count, IDS);
-    assert_true(got->cms[0].corners[0].y_px > LONGEST - tape.height_px);
+    assert_true((int)got->cms[0].corners[0].y_px > LONGEST - tape.height_px);
     free(tape.pixels);
     free(wide.pixels);
     free(high.pixels);
@@ -136,7 +136,8 @@ static void reads_a_tape_in_the_last_corner_of_the_largest_frame(void **state)
     assert_int_equal(tapemark_decode(&image, NULL, workspace, workspace_bytes, &result), TAPEMARK_OK);
     assert_bounded(&result, &all, since);
     assert_int_equal(result.cm_count, IDS);
-    assert_true(cms[0].corners[0].x_px > SIDE - tape.width_px && cms[0].corners[0].y_px > SIDE - tape.height_px);
+    assert_true((int)cms[0].corners[0].x_px > SIDE - tape.width_px);
+    assert_true((int)cms[0].corners[0].y_px > SIDE - tape.height_px);
     free(tape.pixels);
     free(workspace);
     munmap(pixels, bytes);

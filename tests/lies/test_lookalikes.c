@@ -54,30 +54,40 @@ static void a_mirrored_tape_has_no_ids(void **state)
 }
 
 /* A glossy floor: the tape on the baseboard, and below it the same upside down, paler. */
-static void a_reflection_on_the_floor_is_no_second_tape(void **state)
+static void print_floor(printed *print, int gap, int pale)
 {
-    (void)state;
-    static printed print, mirrored;
+    static printed mirrored;
     print_nothing(&mirrored, BARED + 4, HEIGHT + 2);
     print_segment(&mirrored, 2, 1, ids, IDS, true);
     print_mirror_rows(&mirrored);
+    print_nothing(print, BARED + 4, 2 * HEIGHT + 4 + gap);
+    print_segment(print, 2, 1, ids, IDS, true);
+    print_copy(print, 0, HEIGHT + 2 + gap, &mirrored, 0, 0, BARED + 4, HEIGHT + 2);
+    for (int i = (HEIGHT + 2 + gap) * print->columns; i < print->rows * print->columns; i++)
+        print->shades[i] = (uint8_t)(print->shades[i] == INK ? INK + pale : PAPER - pale / 4);
+}
+
+static void assert_all_above(const decoding *got, double y_px)
+{
+    for (size_t i = 0; i < got->result.cm_count; i++)
+        assert_true(middle_y(got->cms[i].corners) < y_px);
+    for (size_t i = 0; i < got->result.tm_count; i++)
+        if (middle_y(got->tms[i].corners) >= y_px)
+            fail_msg("%s: the reflection was read as a TM %s", got->name, got->tms[i].code);
+}
+
+static void a_reflection_on_the_floor_is_no_second_tape(void **state)
+{
+    (void)state;
+    static printed print;
     for (int gap = 0; gap <= 6; gap += 3)
         for (int pale = 0; pale <= 120; pale += 60)
             for (size_t s = 0; s < COUNT_OF(sizes_px); s++) {
-                print_nothing(&print, BARED + 4, 2 * HEIGHT + 4 + gap);
-                print_segment(&print, 2, 1, ids, IDS, true);
-                print_copy(&print, 0, HEIGHT + 2 + gap, &mirrored, 0, 0, BARED + 4, HEIGHT + 2);
-                for (int i = (HEIGHT + 2 + gap) * print.columns; i < print.rows * print.columns; i++)
-                    print.shades[i] = (uint8_t)(print.shades[i] == INK ? INK + pale : PAPER - pale / 4);
+                print_floor(&print, gap, pale);
                 const decoding *got = decode_print(&print, (scene_pose){.px_per_module = sizes_px[s]}, NULL, "floor");
-                const double real_below = (0.5 * print.rows + 4) * sizes_px[s];
                 if (assert_only(got, ids, IDS) < IDS && sizes_px[s] > 1.5)
                     fail_msg("%s: %u CMs of the tape were read", got->name, (unsigned)got->result.cm_count);
-                for (size_t i = 0; i < got->result.cm_count; i++)
-                    assert_true(middle_y(got->cms[i].corners) < real_below);
-                for (size_t i = 0; i < got->result.tm_count; i++)
-                    if (middle_y(got->tms[i].corners) >= real_below)
-                        fail_msg("%s: the reflection was read as a TM %s", got->name, got->tms[i].code);
+                assert_all_above(got, (0.5 * print.rows + 4) * sizes_px[s]);
             }
 }
 
