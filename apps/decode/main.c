@@ -187,6 +187,13 @@ static bool decode_input(decode_run *run, const input_file *input)
 
 /* ---- The run ------------------------------------------------------------------------------------------- */
 
+static void tell_skipped(const char *path, size_t count)
+{
+    char text[80];
+    snprintf(text, sizeof text, "%zu file%s left out (neither picture nor video)", count, count == 1 ? "" : "s");
+    print_error(path, text);
+}
+
 static void add_input(decode_run *run, const char *path)
 {
     const decode_options *options = &run->options;
@@ -199,8 +206,7 @@ static void add_input(decode_run *run, const char *path)
     if (!added)
         tell_input_error(run, path, &error);
     else if (skipped > 0)
-        fprintf(stderr, PROGRAM ": %s: %zu file%s left out (neither picture nor video)\n", path, skipped,
-                skipped == 1 ? "" : "s");
+        tell_skipped(path, skipped);
 }
 
 static bool prepare_result(decode_run *run, error_text *error)

@@ -4,6 +4,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "text_buffer.h"
+
 #define FIRST_AFTER_US INT64_C(1000000)
 #define INTERVAL_US INT64_C(200000)
 
@@ -21,6 +23,18 @@ void progress_init(progress *line)
     line->next_us = monotonic_us() + FIRST_AFTER_US;
 }
 
+/* As much of it as fits a line beside the rest. */
+static void print_name(const char *name)
+{
+    char beginning[51];
+    text_buffer printable = {0};
+    snprintf(beginning, sizeof beginning, "%s", name);
+    text_buffer_add_printable(&printable, beginning);
+    if (!printable.failed)
+        fprintf(stderr, "%s", printable.text);
+    text_buffer_release(&printable);
+}
+
 void progress_update(progress *line, const char *source, uint64_t frames, uint64_t expected, size_t input,
                      size_t input_count)
 {
@@ -34,7 +48,8 @@ void progress_update(progress *line, const char *source, uint64_t frames, uint64
     fprintf(stderr, "\r\033[K");
     if (input_count > 1)
         fprintf(stderr, "%zu of %zu, ", input, input_count);
-    fprintf(stderr, "%.50s: frame %llu", source, (unsigned long long)frames);
+    print_name(source);
+    fprintf(stderr, ": frame %llu", (unsigned long long)frames);
     if (expected >= frames)
         fprintf(stderr, " of about %llu", (unsigned long long)expected);
     fflush(stderr);

@@ -243,9 +243,9 @@ static void add_text_line(text_buffer *buffer, const frame_report *report, const
                           const tapemark_point corners[4], float confidence)
 {
     tapemark_point middle = centre(corners);
-    text_buffer_add(buffer, "%s frame %llu: %s at (%.0f, %.0f), confidence %.2f", report->source,
-                    (unsigned long long)report->frame, what, (double)middle.x_px, (double)middle.y_px,
-                    (double)confidence);
+    text_buffer_add_printable(buffer, report->source);
+    text_buffer_add(buffer, " frame %llu: %s at (%.0f, %.0f), confidence %.2f", (unsigned long long)report->frame,
+                    what, (double)middle.x_px, (double)middle.y_px, (double)confidence);
 }
 
 static void add_text_place(text_buffer *buffer, marker_place place)

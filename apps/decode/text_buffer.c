@@ -76,6 +76,12 @@ static bool is_control(char c)
     return (unsigned char)c < 0x20 || c == 0x7f;
 }
 
+/* Of two bytes, U+0080 to U+009F: some terminals obey U+009B as they do ESC [. */
+static bool is_far_control(const unsigned char *text)
+{
+    return text[0] == 0xc2 && text[1] < 0xa0;
+}
+
 void text_buffer_add_json_string(text_buffer *buffer, const char *text)
 {
     text_buffer_add(buffer, "\"");
@@ -98,7 +104,7 @@ void text_buffer_add_printable(text_buffer *buffer, const char *text)
 {
     while (*text != '\0') {
         size_t length = utf8_length((const unsigned char *)text);
-        if (length == 0 || is_control(*text))
+        if (length == 0 || is_control(*text) || is_far_control((const unsigned char *)text))
             text_buffer_add(buffer, "?");
         else
             text_buffer_add(buffer, "%.*s", (int)length, text);

@@ -237,19 +237,37 @@ expect_refusal 1 'cut.json: is not valid JSON: it ends too early at line 1, colu
 
 # ---- On a terminal --------------------------------------------------------------------------------------------
 
-# script(1) gives the program a terminal to write to; the frames come slowly enough for two looks at the progress.
+# script(1) gives the program a terminal to write to. The second frame comes when progress is told of, the third when
+# that was seen and is due again. What a name holds is shown there, and not obeyed.
+escape=$(printf '\033')
+mv pipe "pi${escape}[2Jpe"
 {
     "$draw" y4m 1 5
-    for pause in 1.2 0.5; do
-        sleep "$pause"
-        "$draw" y4m 1 5 | tail -c 307206
+    sleep 1.2
+    "$draw" y4m 1 5 | tail -c 307206
+    patience=300
+    until grep -qsF 'frame 2' terminal || [ "$patience" -eq 0 ]; do
+        sleep 0.1
+        patience=$((patience - 1))
     done
-} >pipe &
-script -qec "'$program' pipe >out" terminal >/dev/null </dev/null || fail 'a run on a terminal'
+    sleep 0.3
+    "$draw" y4m 1 5 | tail -c 307206
+} >"pi${escape}[2Jpe" &
+script -qfec "'$program' 'pi${escape}[2Jpe' >out" terminal >/dev/null </dev/null || fail 'a run on a terminal'
 wait
 expect_lines out 3
-expect terminal 'pipe: frame 2'
-expect terminal 'pipe: frame 3'
+expect terminal 'pi?[2Jpe: frame 2'
+expect terminal 'pi?[2Jpe: frame 3'
 expect terminal '3 frames, 3 with a marker read'
+sed 1d terminal >shown # script(1) begins with the command
+expect_none shown "${escape}[2J"
+mkdir "se${escape}t"
+cp cm.pgm "se${escape}t/c${escape}m.pgm"
+echo >"se${escape}t/notes"
+run 0 --format text "se${escape}t"
+expect out 'c?m.pgm frame 0: CM -20'
+expect err 'se?t: 1 file left out'
+expect_none out "$escape"
+expect_none err "$escape"
 run 0 walk.y4m
 expect_none err "$(printf '\r')"
