@@ -235,6 +235,15 @@ static void sentences_that_break_the_rules_are_damaged(void **state)
         "PTMKP,1,2,01,42949672960,4,5",
         "PTMKD,4294967296,1,2,3,4",
         "PTMKD,4294967300,1,2,3,4",
+        "PTMKF,1,0000,,,6554,0,0,0",    /* what fits its type, and not its range */
+        "PTMKF,1,0000,,,0,6554,0,0",
+        "PTMKC,1,2,00,5,0,0,0,3600,0,,",
+        "PTMKC,1,2,00,5,0,0,0,0,101,,",
+        "PTMKT,1,2,00,2,00000000,0,0,0,0,0,0",
+        "PTMKT,1,2,00,33,00000000,0,0,0,0,0,0",
+        "PTMKT,1,2,00,3,00000008,0,0,0,0,0,0",
+        "PTMKT,1,2,00,3,00000000,0,0,0,0,0,4",
+        "PTMKP,1,2,01,-3,4,3600",
         "PTMKA,1,OKAY,2,text",          /* a text too long */
         "PTMKA,1,OK,2,12345678901234567890123456789012345678901",
         "PTMKA,1,O!,2,text",
@@ -283,6 +292,61 @@ static void numbers_at_the_ends_of_their_ranges_are_taken(void **state)
     assert_int_equal(push_message(&receiver, &device), 1);
     assert_int_equal(receiver.record.as.device.uptime_s, UINT32_MAX);
     assert_int_equal(receiver.record.as.device.version_patch, 255);
+}
+
+/* Of a record of zeros, but for what has to be set: taken with the values at both ends of the range, and refused with
+ * those beyond them. */
+static void expect_range(uint8_t *fields, size_t size, size_t at, uint32_t least, uint32_t most)
+{
+    const uint32_t tried[] = {least, most, least - 1, most + 1};
+    for (size_t i = 0; i < COUNT_OF(tried); i++) {
+        if (i == 2 && least == 0)
+            continue;
+        fields[at] = (uint8_t)tried[i];
+        if (most > UINT8_MAX)
+            fields[at + 1] = (uint8_t)(tried[i] >> 8);
+        const message sent = packet_of(fields, size);
+        tapemark_receiver receiver = {0};
+        assert_int_equal(push_message(&receiver, &sent), i < 2);
+        assert_int_equal(receiver.damaged, i >= 2);
+    }
+}
+
+static void values_out_of_range_are_refused(void **state)
+{
+    (void)state;
+    enum { VERSION = 0x10, FRAME_BYTES = 17, CM_BYTES = 20, TM_BYTES = 20, PLACE_BYTES = 15, TM_LENGTH_AT = 5,
+           TM_CODE_AT = 6, PLACE_FLAGS_AT = 4 };
+    static const struct {
+        uint8_t type;
+        size_t size, at;
+        uint32_t least, most;
+    } ranges[] = {
+        {TAPEMARK_RECORD_FRAME, FRAME_BYTES, 11, 0, 6553}, {TAPEMARK_RECORD_FRAME, FRAME_BYTES, 13, 0, 6553},
+        {TAPEMARK_RECORD_CM, CM_BYTES, 15, 0, 3599},       {TAPEMARK_RECORD_CM, CM_BYTES, 17, 0, 100},
+        {TAPEMARK_RECORD_TM, TM_BYTES, TM_LENGTH_AT, 3, 32}, {TAPEMARK_RECORD_TM, TM_BYTES, 16, 0, 3599},
+        {TAPEMARK_RECORD_TM, TM_BYTES, 18, 0, 100},        {TAPEMARK_RECORD_TM, TM_BYTES, 19, 0, 32},
+        {TAPEMARK_RECORD_PLACE, PLACE_BYTES, 13, 0, 3599},
+    };
+    for (size_t i = 0; i < COUNT_OF(ranges); i++) {
+        uint8_t fields[32] = {(uint8_t)(VERSION | ranges[i].type)};
+        fields[TM_LENGTH_AT] = ranges[i].type == TAPEMARK_RECORD_TM ? 32 : 0;
+        fields[PLACE_FLAGS_AT] = ranges[i].type == TAPEMARK_RECORD_PLACE ? TAPEMARK_PLACE_HEADED : 0;
+        expect_range(fields, ranges[i].size, ranges[i].at, ranges[i].least, ranges[i].most);
+    }
+    /* A TM has no more bits than CMs, and no more CMs read. */
+    uint8_t fields[TM_BYTES] = {VERSION | TAPEMARK_RECORD_TM};
+    fields[TM_LENGTH_AT] = 5;
+    expect_range(fields, sizeof fields, TM_CODE_AT, 0, 31);
+    fields[TM_CODE_AT] = 0;
+    expect_range(fields, sizeof fields, 19, 0, 5);
+    /* What is not known has no range. */
+    uint8_t place[PLACE_BYTES] = {VERSION | TAPEMARK_RECORD_PLACE};
+    memset(place + 13, 0xff, 2);
+    const message sent = packet_of(place, sizeof place);
+    tapemark_receiver receiver = {0};
+    assert_int_equal(push_message(&receiver, &sent), 1);
+    assert_int_equal(receiver.record.as.place.heading_tenth_deg, 0);
 }
 
 static void both_checks_of_a_sentence_are_held(void **state)
@@ -567,6 +631,7 @@ int main(void)
         cmocka_unit_test(sentences_that_break_the_rules_are_damaged),
         cmocka_unit_test(sentences_that_stop_early_are_damaged),
         cmocka_unit_test(numbers_at_the_ends_of_their_ranges_are_taken),
+        cmocka_unit_test(values_out_of_range_are_refused),
         cmocka_unit_test(a_checksum_has_two_upper_case_digits),
         cmocka_unit_test(a_line_end_ends_a_sentence),
         cmocka_unit_test(both_checks_of_a_sentence_are_held),

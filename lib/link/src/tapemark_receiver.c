@@ -11,9 +11,11 @@
 #include <avr/pgmspace.h>
 #define IN_FLASH PROGMEM
 #define FROM_FLASH(byte) pgm_read_byte(&(byte))
+#define WORD_FROM_FLASH(word) pgm_read_word(&(word))
 #else
 #define IN_FLASH
 #define FROM_FLASH(byte) (byte)
+#define WORD_FROM_FLASH(word) (word)
 #endif
 
 /* ---- The fields of each record ------------------------------------------------------------------------ */
@@ -35,10 +37,22 @@ enum {
     FLAGS16 = 2 | HEX | FLAGS
 };
 
+/* Of numbers: the flag without which they are not known, and which of these they do not exceed. */
+enum {
+    NEEDED_FLAG = 0x07,
+    RANGE_SHIFT = 3,
+    PIXELS = 1 << RANGE_SHIFT,
+    ANGLE = 2 << RANGE_SHIFT,
+    PERCENT = 3 << RANGE_SHIFT,
+    CMS = 4 << RANGE_SHIFT
+};
+
+static const uint16_t greatest[] IN_FLASH = {6553, 3599, 100, TAPEMARK_TM_LENGTH_MAX};
+
 typedef struct field_rule {
     uint8_t kind;
     uint8_t offset; /* in the record's structure */
-    uint8_t detail; /* of a text, its greatest length; of others, the flag without which they are not known */
+    uint8_t detail; /* of a text, its greatest length; of others, see above */
 } field_rule;
 
 #define FIELD(record, member, kind, detail) {kind, offsetof(tapemark_##record##_record, member), detail}
@@ -50,8 +64,8 @@ static const field_rule field_rules[] IN_FLASH = {
     FIELD(frame, flags, FLAGS16, 0),
     FIELD(frame, capture_us, U32, TAPEMARK_FRAME_TIMED),
     FIELD(frame, age_10us, U16, TAPEMARK_FRAME_TIMED),
-    FIELD(frame, width_px, U16, 0),
-    FIELD(frame, height_px, U16, 0),
+    FIELD(frame, width_px, U16, PIXELS),
+    FIELD(frame, height_px, U16, PIXELS),
     FIELD(frame, records, U8, 0),
     FIELD(frame, dropped, U8, 0),
     END_OF_RECORD,
@@ -63,8 +77,8 @@ static const field_rule field_rules[] IN_FLASH = {
     FIELD(cm, x_tenth_px, U16, 0),
     FIELD(cm, y_tenth_px, U16, 0),
     FIELD(cm, size_tenth_px, U16, 0),
-    FIELD(cm, angle_tenth_deg, U16, 0),
-    FIELD(cm, confidence_percent, U8, 0),
+    FIELD(cm, angle_tenth_deg, U16, ANGLE),
+    FIELD(cm, confidence_percent, U8, PERCENT),
     FIELD(cm, tm, U8, TAPEMARK_CM_IN_TM),
     FIELD(cm, slot, U8, TAPEMARK_CM_IN_TM),
     END_OF_RECORD,
@@ -72,13 +86,13 @@ static const field_rule field_rules[] IN_FLASH = {
     FIELD(tm, seq, U16, 0),
     FIELD(tm, index, U8, 0),
     FIELD(tm, flags, FLAGS8, 0),
-    FIELD(tm, length, U8, 0),
+    FIELD(tm, length, U8, CMS),
     FIELD(tm, code, HEX32, 0),
     FIELD(tm, x_tenth_px, U16, 0),
     FIELD(tm, y_tenth_px, U16, 0),
     FIELD(tm, size_tenth_px, U16, 0),
-    FIELD(tm, angle_tenth_deg, U16, 0),
-    FIELD(tm, confidence_percent, U8, 0),
+    FIELD(tm, angle_tenth_deg, U16, ANGLE),
+    FIELD(tm, confidence_percent, U8, PERCENT),
     FIELD(tm, cms_read, U8, 0),
     END_OF_RECORD,
 
@@ -87,7 +101,7 @@ static const field_rule field_rules[] IN_FLASH = {
     FIELD(place, flags, FLAGS8, 0),
     FIELD(place, x_mm, I32, 0),
     FIELD(place, y_mm, I32, 0),
-    FIELD(place, heading_tenth_deg, U16, TAPEMARK_PLACE_HEADED),
+    FIELD(place, heading_tenth_deg, U16, ANGLE | TAPEMARK_PLACE_HEADED),
     END_OF_RECORD,
 
     FIELD(status, flags, FLAGS16, 0),
@@ -246,7 +260,7 @@ static bool parse_number(const uint8_t *text, uint8_t length, uint8_t kind, uint
     if (kind & HEX)
         return length == 2 * width && parse_hex(text, length, value);
     if (!(kind & SIGNED))
-        return parse_decimal(text, length, 0xffffffffu >> (32 - 8 * width), value);
+        return parse_decimal(text, length, width == 1 ? UINT8_MAX : width == 2 ? UINT16_MAX : UINT32_MAX, value);
     if (length == 0 || *text != '-')
         return parse_decimal(text, length, 0x7fffffffu, value);
     const bool good = parse_decimal(text + 1, (uint8_t)(length - 1), 0x80000000u, value);
@@ -317,6 +331,15 @@ static const uint8_t *take_field(record_encoding encoding, const uint8_t *at, co
     return NULL;
 }
 
+/* What no range of a single field tells. */
+static bool is_tm(const tapemark_tm_record *tm)
+{
+    uint32_t rest = tm->code;
+    for (uint8_t i = tm->length; i > 0; i--)
+        rest >>= 1;
+    return tm->length >= TAPEMARK_TM_LENGTH_MIN && tm->cms_read <= tm->length && rest == 0;
+}
+
 /* Takes a record of a known type apart; what later versions of the format append to it is left aside. */
 static bool take_fields(tapemark_record *record, uint8_t type, record_encoding encoding, const uint8_t *at,
                         const uint8_t *end)
@@ -327,17 +350,22 @@ static bool take_fields(tapemark_record *record, uint8_t type, record_encoding e
         const uint8_t kind = FROM_FLASH(rule->kind);
         const uint8_t detail = FROM_FLASH(rule->detail);
         char *const member = (char *)&record->as + FROM_FLASH(rule->offset);
-        wire_field field = {kind, detail, (flags & detail) == detail, member, 0};
+        const uint8_t flag = detail & NEEDED_FLAG;
+        wire_field field = {kind, detail, (flags & flag) == flag, member, 0};
         at = take_field(encoding, at, end, &field);
         if (at == NULL)
             return false;
-        if (!(kind & TEXT))
-            store_number(member, kind & WIDTH, field.value);
+        if (kind & TEXT)
+            continue;
+        if (detail >> RANGE_SHIFT != 0 &&
+            (uint16_t)field.value > WORD_FROM_FLASH(greatest[(detail >> RANGE_SHIFT) - 1]))
+            return false;
+        store_number(member, kind & WIDTH, field.value);
         if (kind & FLAGS)
             flags = (uint8_t)field.value;
     }
     record->type = type;
-    return true;
+    return type != TAPEMARK_RECORD_TM || is_tm(&record->as.tm);
 }
 
 /* What a whole message of this type and version is worth. */

@@ -120,6 +120,8 @@ typedef struct tapemark_cm_record {
     uint8_t slot; /* [IN_TM] its place in that TM as read, from 0 */
 } tapemark_cm_record;
 
+enum { TAPEMARK_TM_LENGTH_MIN = 3, TAPEMARK_TM_LENGTH_MAX = 32 };
+
 /* A tape marker. */
 typedef struct tapemark_tm_record {
     uint16_t seq;
@@ -211,7 +213,8 @@ enum {
 /* All zero at first. Its user reads `record` and the counters; the rest is the receiver's own. */
 typedef struct tapemark_receiver {
     tapemark_record record; /* what the last push told of; good until the next one */
-    uint16_t damaged;       /* sentences and packets that failed a check, or noise between packets; wraps */
+    uint16_t damaged;       /* sentences and packets that failed a check or hold a value out of range, or noise
+                               between packets; wraps */
     uint16_t unknown;       /* whole records of a type or version this receiver does not know; wraps */
 #ifndef TAPEMARK_RECEIVER_NO_SENTENCES
     struct {
