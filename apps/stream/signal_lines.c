@@ -2,9 +2,12 @@
 
 #include "messages.h"
 
+static const int64_t retry_interval_ns = INT64_C(3000000000);
+
 static void tell_failure(signal_lines *lines, const char *name, const error_text *reason)
 {
     lines->failures++;
+    lines->next_try_ns = camera_clock_ns() + retry_interval_ns;
     message_tell(name, reason->text);
 }
 
@@ -36,6 +39,32 @@ bool signal_lines_are_whole(const signal_lines *lines, const gpio_settings *want
     return (lines->seen != NULL) == (wanted->seen[0] != '\0') &&
            (lines->strobe != NULL) == (wanted->strobe[0] != '\0') &&
            (lines->trigger != NULL) == (wanted->trigger[0] != '\0');
+}
+
+static void tell_return(const char *title, const char *name)
+{
+    error_text text;
+    error_text_set(&text, "GPIO line %s is there", name);
+    message_tell(title, text.text);
+}
+
+void signal_lines_try_again(signal_lines *lines, const gpio_settings *wanted, int64_t now_ns)
+{
+    error_text known;
+    gpio_output *flash = NULL;
+    if (now_ns < lines->next_try_ns || signal_lines_are_whole(lines, wanted))
+        return;
+    lines->next_try_ns = now_ns + retry_interval_ns;
+    if (lines->seen == NULL && wanted->seen[0] != '\0' &&
+        (lines->seen = gpio_output_open(wanted->seen, &known)) != NULL)
+        tell_return("gpio-seen", wanted->seen);
+    if (lines->strobe == NULL && wanted->strobe[0] != '\0' &&
+        (flash = gpio_output_open(wanted->strobe, &known)) != NULL &&
+        (lines->strobe = strobe_open(flash, &known)) != NULL)
+        tell_return("gpio-strobe", wanted->strobe);
+    if (lines->trigger == NULL && wanted->trigger[0] != '\0' &&
+        (lines->trigger = gpio_input_open(wanted->trigger, &known)) != NULL)
+        tell_return("gpio-trigger", wanted->trigger);
 }
 
 void signal_lines_show_seen(signal_lines *lines, bool seen)
@@ -73,7 +102,8 @@ void signal_lines_foretell(signal_lines *lines, const camera_frame *got, int64_t
     int64_t half_ns = got->exposure_us > 0 ? (int64_t)got->exposure_us * 500 : lines->period_ns / 4;
     int64_t periods = (now_ns + lead_ns + half_ns - got->image.time_ns) / lines->period_ns + 1;
     int64_t middle_ns = got->image.time_ns + periods * lines->period_ns;
-    strobe_plan(lines->strobe, middle_ns - half_ns - lead_ns, middle_ns + half_ns);
+    const strobe_times times = {middle_ns - half_ns - lead_ns, middle_ns + half_ns, lines->period_ns};
+    strobe_plan(lines->strobe, &times);
 }
 
 bool signal_lines_triggered(signal_lines *lines)

@@ -1,5 +1,5 @@
-/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and given back; it stays away until all
- * are opened again. */
+/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and given back; from then on it is asked
+ * for now and then. */
 #ifndef STREAM_SIGNAL_LINES_H
 #define STREAM_SIGNAL_LINES_H
 
@@ -15,6 +15,7 @@ typedef struct signal_lines {
     strobe *strobe;
     int64_t last_exposure_ns;  /* the middle of it; 0: none yet */
     int64_t period_ns;
+    int64_t next_try_ns;       /* when those that are missing are asked for again */
     unsigned failures;
 } signal_lines;
 
@@ -23,6 +24,9 @@ void signal_lines_open(signal_lines *lines, const gpio_settings *wanted);
 
 /* Whether all that are named are there and none has failed. */
 bool signal_lines_are_whole(const signal_lines *lines, const gpio_settings *wanted);
+
+/* Asks again for those that are missing, when it is time to; tells of those that are there then. */
+void signal_lines_try_again(signal_lines *lines, const gpio_settings *wanted, int64_t now_ns);
 
 void signal_lines_show_seen(signal_lines *lines, bool seen);
 

@@ -103,6 +103,7 @@ static void keep_times(stream *self, int64_t now_ns)
         stream_tell_loss(self, now_ns);
     if (since_status_ns >= status_interval_ns + (frame_went ? 0 : status_patience_ns))
         stream_tell_status(self, now_ns);
+    signal_lines_try_again(&self->gpio, &self->settings.gpio, now_ns);
     int64_t alive_ns = service_alive_interval_ns(self->service);
     if (alive_ns > 0 && now_ns >= self->next_alive_ns) {
         service_tell_alive(self->service);

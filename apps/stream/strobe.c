@@ -5,13 +5,16 @@
 #include <string.h>
 #include <time.h>
 
+/* Flashes of one plan; when no frames come any more, it is dark soon. */
+enum { FLASHES_MAX = 4 };
+
 struct strobe {
     gpio_output *line;
     pthread_t thread;
     pthread_mutex_t mutex;
     pthread_cond_t changed;
-    int64_t on_ns, off_ns;
-    bool planned;
+    strobe_times next;
+    unsigned planned;  /* flashes */
     bool ending;
     bool failed;
     error_text failure;
@@ -44,10 +47,18 @@ static void set_line(strobe *self, bool on)
     }
 }
 
+/* What is to be done, when the next flash is over or it is too late for it. */
+static void plan_next(strobe *self)
+{
+    self->planned--;
+    self->next.on_ns += self->next.period_ns;
+    self->next.off_ns += self->next.period_ns;
+}
+
 static void flash(strobe *self)
 {
-    int64_t off_ns = self->off_ns;
-    self->planned = false;
+    int64_t off_ns = self->next.off_ns;
+    plan_next(self);
     set_line(self, true);
     while (!self->ending && clock_ns() < off_ns)
         wait_until(self, off_ns);
@@ -59,12 +70,12 @@ static void *run(void *context)
     strobe *self = context;
     pthread_mutex_lock(&self->mutex);
     while (!self->ending) {
-        if (!self->planned)
+        if (self->planned == 0)
             pthread_cond_wait(&self->changed, &self->mutex);
-        else if (clock_ns() >= self->off_ns)
-            self->planned = false;  /* too late to be of use */
-        else if (clock_ns() < self->on_ns)
-            wait_until(self, self->on_ns);
+        else if (clock_ns() >= self->next.off_ns)
+            plan_next(self);
+        else if (clock_ns() < self->next.on_ns)
+            wait_until(self, self->next.on_ns);
         else
             flash(self);
     }
@@ -101,12 +112,16 @@ strobe *strobe_open(gpio_output *line, error_text *error)
     return NULL;
 }
 
-void strobe_plan(strobe *self, int64_t on_ns, int64_t off_ns)
+void strobe_plan(strobe *self, const strobe_times *times)
 {
     pthread_mutex_lock(&self->mutex);
-    self->on_ns = on_ns;
-    self->off_ns = off_ns;
-    self->planned = true;
+    strobe_times next = *times;
+    if (self->planned > 0 && next.on_ns - self->next.on_ns > next.period_ns / 2) {
+        next.on_ns -= next.period_ns;
+        next.off_ns -= next.period_ns;
+    }
+    self->next = next;
+    self->planned = FLASHES_MAX;
     pthread_cond_signal(&self->changed);
     pthread_mutex_unlock(&self->mutex);
 }
