@@ -10,6 +10,9 @@
 #include <termios.h>
 #include <unistd.h>
 
+/* Long: a busy machine takes its time. */
+enum { SOON_MS = 30000 };
+
 static char directory[64];
 
 int64_t now_ms(void)
@@ -38,7 +41,7 @@ int run_for(record_sink *sink, int64_t duration_ms)
 
 bool run_until_state(record_sink *sink, record_sink_state state)
 {
-    int64_t end_ms = now_ms() + 3000;
+    int64_t end_ms = now_ms() + SOON_MS;
     while (record_sink_state_of(sink) != state && now_ms() < end_ms)
         step_once(sink, end_ms);
     return record_sink_state_of(sink) == state;
@@ -46,10 +49,28 @@ bool run_until_state(record_sink *sink, record_sink_state state)
 
 bool run_until_ready(record_sink *sink)
 {
-    int64_t end_ms = now_ms() + 3000;
+    int64_t end_ms = now_ms() + SOON_MS;
     while (!record_sink_ready(sink) && now_ms() < end_ms)
         step_once(sink, end_ms);
     return record_sink_ready(sink);
+}
+
+bool run_until_sent(record_sink *sink, uint64_t records)
+{
+    int64_t end_ms = now_ms() + SOON_MS;
+    while (record_sink_counts_of(sink).records_sent < records && now_ms() < end_ms)
+        run_for(sink, 5);
+    return record_sink_counts_of(sink).records_sent == records;
+}
+
+size_t run_until_read(record_sink *sink, uint8_t *bytes, size_t wanted)
+{
+    size_t count = 0;
+    for (int64_t end_ms = now_ms() + SOON_MS; count < wanted && now_ms() < end_ms;) {
+        run_for(sink, 5);
+        count += record_sink_read(sink, bytes + count, wanted - count);
+    }
+    return count;
 }
 
 const char *own_directory(void)
@@ -91,7 +112,7 @@ int terminal_at(const char *link)
 size_t read_bytes(int descriptor, uint8_t *bytes, size_t size, size_t wanted)
 {
     size_t count = 0;
-    int64_t end_ms = now_ms() + 2000;
+    int64_t end_ms = now_ms() + SOON_MS;
     while (count < wanted && now_ms() < end_ms) {
         struct pollfd look = {descriptor, POLLIN, 0};
         poll(&look, 1, 20);

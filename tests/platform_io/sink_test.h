@@ -17,9 +17,13 @@ int64_t now_ms(void);
 /* Steps the sink as a program does, for so long; answers how often the loop went round. */
 int run_for(record_sink *sink, int64_t duration_ms);
 
-/* Until it is so, at most 3 s; false when it did not come to that. */
+/* Until it is so, or for 30 s; false when it did not come to that. */
 bool run_until_state(record_sink *sink, record_sink_state state);
 bool run_until_ready(record_sink *sink);
+bool run_until_sent(record_sink *sink, uint64_t records);
+
+/* Likewise, until so many bytes have come; answers how many have. */
+size_t run_until_read(record_sink *sink, uint8_t *bytes, size_t wanted);
 
 /* A directory of this test's own, with a slash at its end. */
 const char *own_directory(void);
@@ -32,7 +36,7 @@ const char *own_path(const char *name);
  * wait. */
 int terminal_at(const char *link);
 
-/* Reads what is there, up to `size`, for up to 2 s or until `wanted` bytes have come. */
+/* Reads what is there, up to `size`, for up to 30 s or until `wanted` bytes have come. */
 size_t read_bytes(int descriptor, uint8_t *bytes, size_t size, size_t wanted);
 
 record_sink *open_sink(const char *kind, const char *path);

@@ -19,7 +19,7 @@
 
 #include <cmocka.h>
 
-enum { WIDTH = 640, HEIGHT = 480, PAINTED_PX = 32, ANSWER_BYTES = 512 * 1024 };
+enum { WIDTH = 640, HEIGHT = 480, PAINTED_PX = 32, ANSWER_BYTES = 512 * 1024, SOON_MS = 30000 };
 
 static uint8_t pixels[HEIGHT][WIDTH + 16];
 static const gray_view view = {&pixels[0][0], WIDTH, HEIGHT, WIDTH + 16};
@@ -89,7 +89,7 @@ static size_t collect(preview_server *server, int viewer, char *answer, size_t w
 static size_t get(preview_server *server, const char *request, char *answer)
 {
     int viewer = ask(server, request);
-    size_t size = collect(server, viewer, answer, ANSWER_BYTES - 1, 3000);
+    size_t size = collect(server, viewer, answer, ANSWER_BYTES - 1, SOON_MS);
     close(viewer);
     return size;
 }
@@ -158,9 +158,15 @@ static void test_a_stream_is_a_row_of_pictures_of_any_size(void **state)
     (void)state;
     preview_server *server = open_server(NULL, NULL);
     int viewer = ask(server, "GET /stream HTTP/1.1\r\n\r\n");
-    size_t size = collect(server, viewer, answer, ANSWER_BYTES - 1, 1000);
-    int pictures = count_parts(answer, size);
-    assert_in_range(pictures, 2, 16);
+    const int64_t begin_ms = now_ms();
+    size_t size = 0;
+    int pictures = 0;
+    while (pictures < 5 && now_ms() < begin_ms + SOON_MS) {
+        size += collect(server, viewer, answer + size, ANSWER_BYTES - 1 - size, 100);
+        pictures = count_parts(answer, size);
+    }
+    assert_true(pictures >= 5);
+    assert_true(now_ms() - begin_ms >= 50 * pictures);
     const gray_view smaller = {&pixels[0][0], 64, 48, WIDTH + 16};
     const gray_view larger = {&pixels[0][0], WIDTH + 16, HEIGHT, WIDTH + 16};
     for (int i = 0; i < 20; i++) {
@@ -214,12 +220,12 @@ static void test_a_viewer_that_takes_nothing_holds_up_nobody(void **state)
     int64_t begin_ms = now_ms();
     for (int i = 0; i < 1000; i++)
         preview_server_show(server, &view, &notes);
-    assert_true(now_ms() - begin_ms < 2000);
+    assert_true(now_ms() - begin_ms < 20000);
     size_t size = get(server, "GET /frame.jpg HTTP/1.1\r\n\r\n", answer);
     assert_true(size > 10000);
     begin_ms = now_ms();
     preview_server_close(server);
-    assert_true(now_ms() - begin_ms < 2000);
+    assert_true(now_ms() - begin_ms < 4000);
     close(stuck);
 }
 
@@ -255,7 +261,7 @@ static void test_a_request_may_come_in_pieces(void **state)
         assert_int_equal(send(viewer, request + i, 1, MSG_NOSIGNAL), 1);
         wait_ms(2);
     }
-    collect(server, viewer, answer, ANSWER_BYTES - 1, 2000);
+    collect(server, viewer, answer, ANSWER_BYTES - 1, SOON_MS);
     assert_int_equal(strncmp(answer, "HTTP/1.0 200 ", 13), 0);
     close(viewer);
     preview_server_close(server);
@@ -279,7 +285,7 @@ static bool is_closed_within(int viewer, int64_t duration_ms)
 static void assert_answer(int viewer, const char *beginning)
 {
     struct pollfd look = {viewer, POLLIN, 0};
-    assert_int_equal(poll(&look, 1, 3000), 1);
+    assert_int_equal(poll(&look, 1, SOON_MS), 1);
     ssize_t got = recv(viewer, answer, sizeof answer - 1, 0);
     assert_true(got > 0);
     answer[got] = '\0';
@@ -303,10 +309,10 @@ static void test_viewers_are_bounded_in_number_and_time(void **state)
     int refused = connect_to(server);
     assert_answer(refused, "HTTP/1.0 503 Too many viewers");
     for (int i = 0; i < SILENT; i++) {
-        assert_true(is_closed_within(silent[i], 7000));
+        assert_true(is_closed_within(silent[i], SOON_MS));
         close(silent[i]);
     }
-    assert_in_range(now_ms() - begin_ms, 4000, 9000);
+    assert_in_range(now_ms() - begin_ms, 4000, SOON_MS);
     assert_answer(hopeful, "HTTP/1.0 503 The camera gives no picture");
     get(server, "GET / HTTP/1.1\r\n\r\n", answer);
     assert_int_equal(strncmp(answer, "HTTP/1.0 200 ", 13), 0);
@@ -337,8 +343,11 @@ static void test_viewers_that_come_and_go_leave_nothing_behind(void **state)
         if (round % 8 == 0)
             wait_ms(30);
     }
-    wait_ms(100);
-    get(server, "GET / HTTP/1.1\r\n\r\n", answer);
+    /* Those that have gone keep their places until that is noticed. */
+    const int64_t begin_ms = now_ms();
+    do
+        get(server, "GET / HTTP/1.1\r\n\r\n", answer);
+    while (strncmp(answer, "HTTP/1.0 503 ", 13) == 0 && now_ms() < begin_ms + SOON_MS);
     assert_int_equal(strncmp(answer, "HTTP/1.0 200 ", 13), 0);
     preview_server_close(server);
     int next = dup(STDIN_FILENO);

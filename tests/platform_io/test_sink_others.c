@@ -44,16 +44,18 @@ static void test_a_full_disk_is_told_once(void **state)
     (void)state;
     record_sink *sink = open_sink("file:", "/dev/full");
     assert_no_news(sink);
-    for (int64_t end_ms = now_ms() + 1500; now_ms() < end_ms;) {
+    /* Each time it is tried again, a record is lost; and that is not all the time. */
+    const int64_t begin_ms = now_ms();
+    while (record_sink_counts_of(sink).records_lost < 4 && now_ms() < begin_ms + 30000) {
         if (record_sink_ready(sink))
             send_text(sink, "record", 1);
         run_for(sink, 20);
     }
+    assert_int_equal(record_sink_counts_of(sink).records_lost, 4);
+    assert_true(now_ms() - begin_ms >= 600);
     assert_int_equal(record_sink_state_of(sink), RECORD_SINK_LOST);
     assert_news(sink, "file:/dev/full cannot be written to: No space left");
     assert_int_equal(record_sink_counts_of(sink).records_sent, 0);
-    uint64_t lost = record_sink_counts_of(sink).records_lost;
-    assert_in_range(lost, 2, 9);
     assert_int_equal(record_sink_counts_of(sink).failures, 1);
     record_sink_close(sink);
 }
@@ -131,7 +133,7 @@ static void test_standard_output_never_waits_and_ends_with_its_reader(void **sta
     record_sink_wants(sink, &wait);
     give_stdout_back(saved);
     assert_false((flags & O_NONBLOCK) != 0);
-    assert_true(took_ms < 1000);
+    assert_true(took_ms < 20000);
     assert_true(stalled);
     assert_true(back);
     assert_true(ended);
@@ -157,7 +159,7 @@ static void test_standard_output_may_be_a_socket_or_a_file(void **state)
     send_text(sink, "abc", 1);
     size_t count = read_bytes(ends[0], got, sizeof got, 3);
     int64_t begin_ms = now_ms();
-    for (int i = 0; i < 100 && now_ms() - begin_ms < 3000; i++) {
+    for (int i = 0; i < 100 && now_ms() - begin_ms < 20000; i++) {
         record_sink_send(sink, group, sizeof group, 1);
         record_sink_step(sink);
     }
@@ -167,7 +169,7 @@ static void test_standard_output_may_be_a_socket_or_a_file(void **state)
     close(ends[0]);
     close(ends[1]);
     assert_int_equal(count, 3);
-    assert_true(took_ms < 3000);
+    assert_true(took_ms < 20000);
 
     const char *path = own_path("output");
     int file = open(path, O_WRONLY | O_CREAT, 0600);
@@ -218,8 +220,7 @@ static void test_a_terminal_of_our_own_is_opened_by_others(void **state)
     assert_int_equal(read_bytes(reader, got, sizeof got, 7), 7);
     assert_memory_equal(got, "line\n\r\x03", 7);
     assert_int_equal(write(reader, answer, sizeof answer), (ssize_t)sizeof answer);
-    run_for(sink, 50);
-    assert_int_equal(record_sink_read(sink, got, sizeof got), sizeof answer);
+    assert_int_equal(run_until_read(sink, got, sizeof answer), sizeof answer);
     assert_memory_equal(got, answer, sizeof answer);
     close(reader);
     assert_no_news(sink);
@@ -306,14 +307,13 @@ static void test_udp_sends_a_datagram_a_group(void **state)
     send_text(sink, "first", 1);
     record_sink_send(sink, group, sizeof group, 1);
     struct pollfd look = {listener, POLLIN, 0};
-    assert_int_equal(poll(&look, 1, 1000), 1);
+    assert_int_equal(poll(&look, 1, 30000), 1);
     assert_int_equal(recv(listener, got, sizeof got, 0), 5);
     assert_memory_equal(got, "first", 5);
     assert_int_equal(recvfrom(listener, got, sizeof got, 0, (struct sockaddr *)&sender, &size), sizeof group);
     assert_memory_equal(got, group, sizeof group);
     assert_int_equal(sendto(listener, "back", 4, 0, (struct sockaddr *)&sender, size), 4);
-    run_for(sink, 50);
-    assert_int_equal(record_sink_read(sink, got, sizeof got), 4);
+    assert_int_equal(run_until_read(sink, got, 4), 4);
     assert_memory_equal(got, "back", 4);
     record_sink_close(sink);
     close(listener);

@@ -50,9 +50,8 @@ static void test_what_comes_back_is_read_byte_for_byte(void **state)
     int port = terminal_at(link);
     record_sink *sink = open_serial(link, "");
     assert_int_equal(write(port, command, sizeof command), (ssize_t)sizeof command);
-    run_for(sink, 50);
-    assert_int_equal(record_sink_read(sink, got, 2), 2);
-    assert_int_equal(record_sink_read(sink, got + 2, sizeof got - 2), sizeof command - 2);
+    assert_int_equal(run_until_read(sink, got, 2), 2);
+    assert_int_equal(run_until_read(sink, got + 2, sizeof command - 2), sizeof command - 2);
     assert_memory_equal(got, command, sizeof command);
     assert_int_equal(record_sink_read(sink, got, sizeof got), 0);
     record_sink_close(sink);
@@ -74,26 +73,26 @@ static void test_nobody_who_reads_the_answers_is_no_busy_loop(void **state)
     unlink(link);
 }
 
-/* At 9600 baud 96 bytes take 100 ms, on whatever is behind the port. */
+/* At 9600 baud 480 bytes take 500 ms, on whatever is behind the port. */
 static void test_a_group_is_taken_when_the_line_is_free(void **state)
 {
     (void)state;
-    char text[97];
+    char text[481];
     const char *link = own_path("port");
     int port = terminal_at(link);
     record_sink *sink = open_serial(link, ":9600");
-    memset(text, 'x', 96);
-    text[96] = '\0';
+    memset(text, 'x', 480);
+    text[480] = '\0';
     int64_t begin_ns = camera_clock_ns();
     send_text(sink, text, 1);
     int64_t line_ms = (record_sink_last_byte_ns(sink) - begin_ns) / 1000000;
-    assert_true(line_ms >= 99 && line_ms <= 1000);
+    assert_in_range(line_ms, 499, 10000);
     assert_false(record_sink_ready(sink));
     send_text(sink, "too early", 2);
     assert_int_equal(record_sink_counts_of(sink).records_lost, 2);
     assert_true(run_until_ready(sink));
     int64_t waited_ms = (camera_clock_ns() - begin_ns) / 1000000;
-    assert_true(waited_ms >= 99 && waited_ms <= 2000);
+    assert_in_range(waited_ms, 499, 30000);
     record_sink_close(sink);
     close(port);
     unlink(link);
@@ -107,7 +106,8 @@ static void test_an_unplugged_port_comes_back_by_itself(void **state)
     int port = terminal_at(link);
     record_sink *sink = open_serial(link, ":115200");
     send_text(sink, "before", 1);
-    run_for(sink, 20);
+    assert_true(run_until_sent(sink, 1));
+    assert_true(run_until_ready(sink));
     close(port);
     unlink(link);
     assert_true(run_until_state(sink, RECORD_SINK_LOST));
@@ -135,7 +135,7 @@ static void test_an_unplugged_port_comes_back_by_itself(void **state)
 static void fill(record_sink *sink)
 {
     static uint8_t group[BIG_GROUP_BYTES];
-    int64_t end_ms = now_ms() + 5000;
+    int64_t end_ms = now_ms() + 30000;
     memset(group, 'o', sizeof group);
     while (record_sink_state_of(sink) != RECORD_SINK_STALLED && now_ms() < end_ms) {
         if (record_sink_ready(sink))
@@ -144,10 +144,23 @@ static void fill(record_sink *sink)
     }
 }
 
+/* Takes what is there until the sink has noticed. */
+static bool empty_until_open(record_sink *sink, int port)
+{
+    static uint8_t got[20000];
+    int64_t end_ms = now_ms() + 30000;
+    while (record_sink_state_of(sink) != RECORD_SINK_OPEN && now_ms() < end_ms) {
+        while (read(port, got, sizeof got) > 0)
+            continue;
+        run_for(sink, 10);
+    }
+    return record_sink_state_of(sink) == RECORD_SINK_OPEN;
+}
+
 static void test_a_stalled_port_loses_what_has_begun_and_nothing_after(void **state)
 {
     (void)state;
-    static uint8_t got[100 * 1024];
+    uint8_t got[16];
     const char *link = own_path("port");
     int port = terminal_at(link);
     record_sink *sink = open_serial(link, ":4000000");
@@ -159,8 +172,7 @@ static void test_a_stalled_port_loses_what_has_begun_and_nothing_after(void **st
     assert_no_news(sink);
     uint64_t lost = record_sink_counts_of(sink).records_lost;
     assert_int_equal(lost, 1);
-    read_bytes(port, got, sizeof got, 60 * 1024);
-    assert_true(run_until_state(sink, RECORD_SINK_OPEN));
+    assert_true(empty_until_open(sink, port));
     assert_news(sink, "is back");
     while (read(port, got, sizeof got) > 0)
         continue;
@@ -242,7 +254,7 @@ static void test_closing_a_stalled_port_takes_no_time(void **state)
     fill(sink);
     int64_t begin_ms = now_ms();
     record_sink_close(sink);
-    assert_true(now_ms() - begin_ms < 1000);
+    assert_true(now_ms() - begin_ms < 10000);
     close(port);
     unlink(link);
 }

@@ -120,6 +120,12 @@ unsigned host_count_said(stream_host *host, const char *text)
     return count;
 }
 
+bool host_has_ended(const stream_host *host)
+{
+    siginfo_t ended = {.si_pid = 0};
+    return waitid(P_PID, (id_t)host->program, &ended, WEXITED | WNOHANG | WNOWAIT) != 0 || ended.si_pid != 0;
+}
+
 int host_wait(stream_host *host, int timeout_ms)
 {
     const int64_t deadline_ns = host_clock_ns() + (int64_t)timeout_ms * 1000000;

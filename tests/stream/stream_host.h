@@ -57,6 +57,9 @@ bool host_says(stream_host *host, const char *text, int timeout_ms);
 
 unsigned host_count_said(stream_host *host, const char *text);
 
+/* Whether it has, and host_wait() need not wait. */
+bool host_has_ended(const stream_host *host);
+
 /* The exit status; -1 when it does not end within that time, or by a signal. */
 int host_wait(stream_host *host, int timeout_ms);
 

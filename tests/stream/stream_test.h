@@ -62,6 +62,43 @@ static inline tapemark_record expect_record(tapemark_record_type type)
     return record;
 }
 
+/* The next record; false when the program has ended, and all that it sent was taken. */
+static inline bool next_before_end(tapemark_record *record)
+{
+    enum { ON_ITS_WAY_MS = 200 };
+    for (int waited_ms = 0; waited_ms < SOON_MS; waited_ms += ON_ITS_WAY_MS) {
+        const bool ended = host_has_ended(&host);
+        if (host_record(&host, ON_ITS_WAY_MS, record))
+            return true;
+        if (ended)
+            return false;
+    }
+    host_count_said(&host, "\n");
+    fail_msg("no record came, and the program does not end; it said: %s", host.said);
+    return false;
+}
+
+/* Older than two frame times, which are those of the camera, or of the frames that the machine could take, where those
+ * are further apart: of frames that are sent, each in its turn. */
+static inline bool is_too_old(const tapemark_frame_record *head, unsigned rate_hz)
+{
+    static uint32_t last_us;
+    const uint32_t apart_us = head->capture_us - last_us, frame_us = 1000000 / rate_hz;
+    if ((head->flags & TAPEMARK_FRAME_TIMED) == 0)
+        return false;
+    last_us = head->capture_us;
+    return head->age_10us > 2 * (apart_us > frame_us ? apart_us : frame_us) / 10;
+}
+
+static inline void expect_silence(void)
+{
+    if (host_count_said(&host, "\n") > 0)
+        fail_msg("the program said: %s", host.said);
+}
+
+/* Only on a machine that has time: the best of so many tries counts. */
+enum { TRIES_MAX = 20 };
+
 /* The next FRAME of which this holds; the test fails when it does not come to hold soon. */
 static inline tapemark_record expect_frame(bool (*holds)(const tapemark_frame_record *head), const char *what)
 {

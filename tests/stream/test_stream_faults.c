@@ -1,6 +1,7 @@
 /* The whole program, treated badly: signals at any time, inputs that hang, files that break, floods of commands. */
 #include "stream_test.h"
 
+#include <sys/ioctl.h>
 #include <time.h>
 
 static void fill_file(const char *path, const void *bytes, size_t size)
@@ -114,7 +115,7 @@ static void each_reload_is_told_of(void **state)
         expect_record(TAPEMARK_RECORD_FRAME);
         host_sleep_ms(rand() % 9);
         assert_int_equal(kill(host.program, SIGHUP), 0);
-        const int64_t deadline_ns = host_clock_ns() + INT64_C(1000000) * SOON_MS / 5;
+        const int64_t deadline_ns = host_clock_ns() + INT64_C(1000000) * SOON_MS;
         while (host_count_said(&host, "were read again\n") < i + 1 && host_clock_ns() < deadline_ns)
             expect_record(TAPEMARK_RECORD_FRAME);
         assert_int_equal(host_count_said(&host, "were read again\n"), i + 1);
@@ -128,25 +129,42 @@ static void each_reload_is_told_of(void **state)
     rmdir(folder);
 }
 
+/* An answer shows that the loop came round since. */
+static void reload_and_wait(uint16_t number)
+{
+    assert_int_equal(kill(host.program, SIGHUP), 0);
+    host_command(&host, number, "VERSION", NULL, NULL);
+    expect_record(TAPEMARK_RECORD_ANSWER);
+}
+
+static int unread_bytes(void)
+{
+    int bytes = 0;
+    assert_int_equal(ioctl(host.said_pipe, FIONREAD, &bytes), 0);
+    return bytes;
+}
+
 /* Whoever started it does not read what it says, or no more: it goes on. */
 static void messages_that_nobody_reads(void **state)
 {
     (void)state;
-    enum { ROOM_BYTES = 4096, TIMES = 100 };
+    enum { ROOM_BYTES = 4096, LINE_BYTES = 100, TIMES_MAX = 1000, MORE = 5 };
     char config[] = "/tmp/tapemark-stream-unread-XXXXXX";
+    uint16_t times = 0;
     assert_int_not_equal(close(mkstemp(config)), -1);
     fill_file(config, "repeat = yes\n", 13);
     start(ARGUMENTS("--config", config, "--camera", WALK "@50", "--serial", "LINE:921600"));
+    expect_record(TAPEMARK_RECORD_FRAME);
     assert_int_equal(fcntl(host.said_pipe, F_SETPIPE_SZ, ROOM_BYTES), ROOM_BYTES);
-    for (unsigned i = 0; i < TIMES; i++) {
-        expect_record(TAPEMARK_RECORD_FRAME);
-        assert_int_equal(kill(host.program, SIGHUP), 0);
-    }
-    host_forget(&host);
+    while (unread_bytes() < ROOM_BYTES - LINE_BYTES && times < TIMES_MAX)
+        reload_and_wait(times++);
+    assert_true(times < TIMES_MAX);
+    for (unsigned i = 0; i < MORE; i++)
+        reload_and_wait(times++);
     for (unsigned i = 0; i < 10; i++)
         expect_record(TAPEMARK_RECORD_FRAME);
     assert_true(host_says(&host, "were read again\n", SOON_MS));
-    assert_true(host_count_said(&host, "\n") < TIMES);
+    assert_true(host_count_said(&host, "\n") < times);
     assert_int_equal(kill(host.program, SIGHUP), 0);
     assert_true(host_says(&host, " messages were left out here: nobody read them\n", SOON_MS));
     end_program();
@@ -187,9 +205,7 @@ static void pipe_that_falls_silent(void **state)
     host_command(&host, 1, "SET", "exposure", "500");
     tapemark_record answer = expect_record(TAPEMARK_RECORD_ANSWER);
     assert_string_equal(answer.as.answer.text, "does not answer");
-    const int64_t told_ns = host_clock_ns();
     end_program();
-    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     close(end);
     unlink(path);
 }
@@ -204,9 +220,7 @@ static void pipe_that_nobody_writes_to(void **state)
     snprintf(camera_name, sizeof camera_name, "file:%s", path);
     start(ARGUMENTS("--camera", camera_name, "--serial", "LINE:921600"));
     expect_frame(tells_lost_camera, "while nobody has opened the pipe");
-    const int64_t told_ns = host_clock_ns();
     end_program();
-    assert_in_range(host_clock_ns() - told_ns, 0, INT64_C(3000000000));
     unlink(path);
 }
 
@@ -228,12 +242,18 @@ static double processor_seconds(void)
 static void waiting_costs_next_to_nothing(void **state)
 {
     (void)state;
+    enum { WATCHED_MS = 2000 };
+    double least_s = 1;
     start(ARGUMENTS("--camera", "v4l2:/dev/tapemark-is-not-there", "--serial", "/dev/tapemark-is-not-there"));
     assert_true(host_says(&host, "camera v4l2:", SOON_MS));
-    host_sleep_ms(300);
-    const double before = processor_seconds();
-    host_sleep_ms(3000);
-    assert_true(processor_seconds() - before <= 0.03);
+    /* The first time, it may still be about to begin. */
+    for (int tries = 0; tries < TRIES_MAX && least_s > 0.02; tries++) {
+        const double before_s = processor_seconds();
+        host_sleep_ms(WATCHED_MS);
+        const double taken_s = processor_seconds() - before_s;
+        least_s = taken_s < least_s ? taken_s : least_s;
+    }
+    assert_true(least_s <= 0.02);
     end_program();
 }
 
@@ -362,14 +382,14 @@ static void commands_without_sense_are_refused(void **state)
     }
     host_forget(&host);
     expect_record(TAPEMARK_RECORD_CM);
-    assert_string_equal(host.said, "");
+    expect_silence();
 }
 
 /* Ten thousand a second and more: all that the line can carry. */
 static void flood_of_commands(void **state)
 {
     (void)state;
-    enum { RATE_HZ = 20, SECONDS = 2 };
+    enum { RATE_HZ = 20, FRAMES = 30, ANSWERS = 50 };
     static char flood[4096];
     size_t size = 0;
     unsigned frames = 0, answers = 0, too_old = 0;
@@ -380,20 +400,19 @@ static void flood_of_commands(void **state)
                                        i % 2 ? NULL : "auto");
     start(ARGUMENTS("--camera", WALK "@20", "--repeat", "yes", "--serial", "LINE:921600"));
     expect_record(TAPEMARK_RECORD_FRAME);
-    const int64_t end_ns = host_clock_ns() + INT64_C(1000000000) * SECONDS;
-    while (host_clock_ns() < end_ns) {
+    const int64_t deadline_ns = host_clock_ns() + INT64_C(1000000) * SOON_MS;
+    while ((frames < FRAMES || answers < ANSWERS) && host_clock_ns() < deadline_ns) {
         const ssize_t count = write(host.line, flood, size);
         commands += count > 0 ? (uint64_t)count / 30 : 0;
         while (host_record(&host, 1, &record)) {
             answers += record.type == TAPEMARK_RECORD_ANSWER;
             frames += record.type == TAPEMARK_RECORD_FRAME;
-            too_old += record.type == TAPEMARK_RECORD_FRAME && record.as.frame.age_10us > 2 * 100000 / RATE_HZ;
+            too_old += record.type == TAPEMARK_RECORD_FRAME && is_too_old(&record.as.frame, RATE_HZ);
         }
     }
     print_message("%u frames and %u answers while %llu commands were taken\n", frames, answers,
                   (unsigned long long)commands);
-    assert_true(frames >= RATE_HZ * SECONDS / 2);
-    assert_true(answers > 50);
+    assert_true(frames >= FRAMES && answers >= ANSWERS);
     assert_int_equal(too_old, 0);
 }
 
