@@ -4,12 +4,12 @@
 #include "net_address.h"
 #include "opencv_media.h"
 #include "preview_viewer.h"
+#include "thread.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -293,11 +293,7 @@ static bool make_pipe(preview_server *server, error_text *error)
 
 static bool start_thread(preview_server *server, error_text *error)
 {
-    sigset_t all, former;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &former);
-    int reason = pthread_create(&server->thread, NULL, serve, server);
-    pthread_sigmask(SIG_SETMASK, &former, NULL);
+    int reason = thread_start(&server->thread, serve, server);
     if (reason != 0)
         error_text_set(error, "the preview cannot be served: %s", strerror(reason));
     return reason == 0;

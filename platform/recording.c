@@ -2,9 +2,9 @@
 #include "recording.h"
 
 #include "recording_files.h"
+#include "thread.h"
 
 #include <pthread.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -121,27 +121,7 @@ static void *write_in_background(void *argument)
     return NULL;
 }
 
-static int start_thread(recording *file)
-{
-    sigset_t all, former;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &former);
-    int failure = pthread_create(&file->thread, NULL, write_in_background, file);
-    pthread_sigmask(SIG_SETMASK, &former, NULL);
-    return failure;
-}
-
 /* ---- From outside --------------------------------------------------------------------------------------- */
-
-static void make_locks(recording *file)
-{
-    pthread_condattr_t monotonic;
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_mutex_init(&file->mutex, NULL);
-    pthread_cond_init(&file->changed, &monotonic);
-    pthread_condattr_destroy(&monotonic);
-}
 
 recording *recording_open(const char *path, double rate_hz, error_text *error)
 {
@@ -152,9 +132,10 @@ recording *recording_open(const char *path, double rate_hz, error_text *error)
         return NULL;
     }
     atomic_init(&file->given_up, false);
-    make_locks(file);
+    pthread_mutex_init(&file->mutex, NULL);
+    thread_condition_init(&file->changed);
     file->files = recording_files_open(path, rate_hz, &file->given_up, error);
-    int failure = file->files != NULL ? start_thread(file) : 0;
+    int failure = file->files != NULL ? thread_start(&file->thread, write_in_background, file) : 0;
     if (file->files != NULL && failure == 0)
         return file;
     if (file->files != NULL) {

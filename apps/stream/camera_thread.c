@@ -4,12 +4,13 @@
 #include <errno.h>
 #include <poll.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
 #include <time.h>
 #include <unistd.h>
+
+#include "thread.h"
 
 /* What a camera is busy with usually takes less. */
 static const int64_t reach_patience_ns = 20000000;
@@ -185,26 +186,11 @@ static void *run(void *context)
     return NULL;
 }
 
-/* Signals are for others. */
-static int start(camera_thread *self)
-{
-    sigset_t all, former;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &former);
-    int failure = pthread_create(&self->thread, NULL, run, self);
-    pthread_sigmask(SIG_SETMASK, &former, NULL);
-    return failure;
-}
-
 /* ---- Opening ------------------------------------------------------------------------------------------------- */
 
 static void make_locks(camera_thread *self)
 {
-    pthread_condattr_t monotonic;
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_cond_init(&self->changed, &monotonic);
-    pthread_condattr_destroy(&monotonic);
+    thread_condition_init(&self->changed);
     pthread_mutex_init(&self->mutex, NULL);
     pthread_mutex_init(&self->reach, NULL);
 }
@@ -229,7 +215,9 @@ camera_thread *camera_thread_open(const char *name, const camera_wishes *wishes,
     self->name = strdup(name);
     self->events = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
     self->calls = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-    int failure = self->name == NULL ? ENOMEM : self->events < 0 || self->calls < 0 ? errno : start(self);
+    int failure = self->name == NULL                       ? ENOMEM
+                  : self->events < 0 || self->calls < 0 ? errno
+                                                        : thread_start(&self->thread, run, self);
     if (failure == 0)
         return self;
     error_text_set(error, "cannot be watched: %s", strerror(failure));

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <pthread.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,6 +10,7 @@
 #include "messages.h"
 #include "output_file.h"
 #include "settings.h"
+#include "thread.h"
 
 struct snapshots {
     pthread_mutex_t mutex;  /* of all below */
@@ -29,11 +29,7 @@ snapshots *snapshots_open(void)
     snapshots *self = calloc(1, sizeof *self);
     if (self == NULL)
         return NULL;
-    pthread_condattr_t monotonic;
-    pthread_condattr_init(&monotonic);
-    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
-    pthread_cond_init(&self->changed, &monotonic);
-    pthread_condattr_destroy(&monotonic);
+    thread_condition_init(&self->changed);
     pthread_mutex_init(&self->mutex, NULL);
     return self;
 }
@@ -80,11 +76,7 @@ static void *run(void *context)
 static int start(snapshots *self)
 {
     pthread_t thread;
-    sigset_t all, former;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &former);
-    int failure = pthread_create(&thread, NULL, run, self);
-    pthread_sigmask(SIG_SETMASK, &former, NULL);
+    int failure = thread_start(&thread, run, self);
     if (failure == 0)
         pthread_detach(thread);
     return failure;

@@ -5,6 +5,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "thread.h"
+
 /* Flashes of one plan; when no frames come any more, it is dark soon. */
 enum { FLASHES_MAX = 4 };
 
@@ -83,16 +85,6 @@ static void *run(void *context)
     return NULL;
 }
 
-static void init_waiting(strobe *self)
-{
-    pthread_condattr_t attributes;
-    pthread_condattr_init(&attributes);
-    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-    pthread_cond_init(&self->changed, &attributes);
-    pthread_condattr_destroy(&attributes);
-    pthread_mutex_init(&self->mutex, NULL);
-}
-
 strobe *strobe_open(gpio_output *line, error_text *error)
 {
     strobe *self = calloc(1, sizeof *self);
@@ -102,8 +94,9 @@ strobe *strobe_open(gpio_output *line, error_text *error)
         return NULL;
     }
     self->line = line;
-    init_waiting(self);
-    int failure = pthread_create(&self->thread, NULL, run, self);
+    pthread_mutex_init(&self->mutex, NULL);
+    thread_condition_init(&self->changed);
+    int failure = thread_start(&self->thread, run, self);
     if (failure == 0)
         return self;
     error_text_set(error, "cannot start a thread for the strobe: %s", strerror(failure));
