@@ -1,5 +1,6 @@
 /* tapemark-decode: reads tape-shaped fiducial markers in pictures, videos and raw captures. */
 #include "annotate.h"
+#include "error_line.h"
 #include "frame_source.h"
 #include "gray.h"
 #include "input_list.h"
@@ -39,23 +40,10 @@ typedef struct decode_run {
 
 /* ---- Telling ------------------------------------------------------------------------------------------- */
 
-/* One line whatever the name and the text hold. `name` may be NULL. */
-static void print_error(const char *name, const char *text)
-{
-    text_buffer line = {0};
-    if (name != NULL) {
-        text_buffer_add_printable(&line, name);
-        text_buffer_add(&line, ": ");
-    }
-    text_buffer_add_printable(&line, text);
-    fprintf(stderr, PROGRAM ": %s\n", line.text != NULL ? line.text : "not enough memory");
-    text_buffer_release(&line);
-}
-
 static void tell_input_error(decode_run *run, const char *path, const error_text *error)
 {
     progress_clear(&run->progress);
-    print_error(strcmp(path, "-") == 0 ? "standard input" : path, error->text);
+    error_line_print(PROGRAM, strcmp(path, "-") == 0 ? "standard input" : path, error->text);
     run->input_failed = true;
 }
 
@@ -70,7 +58,7 @@ static bool write_line(decode_run *run)
     if (!written) {
         progress_clear(&run->progress);
         if (reason != EPIPE)
-            print_error("standard output", strerror(reason));
+            error_line_print(PROGRAM, "standard output", strerror(reason));
     }
     return written;
 }
@@ -191,7 +179,7 @@ static void tell_skipped(const char *path, size_t count)
 {
     char text[80];
     snprintf(text, sizeof text, "%zu file%s left out (neither picture nor video)", count, count == 1 ? "" : "s");
-    print_error(path, text);
+    error_line_print(PROGRAM, path, text);
 }
 
 static void add_input(decode_run *run, const char *path)
@@ -231,19 +219,19 @@ static bool prepare_run(decode_run *run)
     const decode_options *options = &run->options;
     error_text error;
     if (!prepare_result(run, &error)) {
-        print_error(NULL, error.text);
+        error_line_print(PROGRAM, NULL, error.text);
         return false;
     }
     if (options->map_path != NULL) {
         if (!map_table_load(options->map_path, &run->known, &error)) {
-            print_error(options->map_path, error.text);
+            error_line_print(PROGRAM, options->map_path, error.text);
             return false;
         }
         run->map = &run->known.map;
         map_table_configure(&run->known, &run->options.config);
     }
     if (options->annotate_path != NULL && !annotate_prepare(options->annotate_path, &error)) {
-        print_error(options->annotate_path, error.text);
+        error_line_print(PROGRAM, options->annotate_path, error.text);
         return false;
     }
     for (int i = 0; i < options->input_count; i++)
@@ -288,7 +276,7 @@ int main(int argc, char *argv[])
     decode_run run = {0};
     error_text error;
     if (!process_prepare()) {
-        print_error("standard output", "is closed");
+        error_line_print(PROGRAM, "standard output", "is closed");
         return EXIT_BAD_INPUT;
     }
     switch (options_parse(argc, argv, &run.options, &error)) {
@@ -299,7 +287,7 @@ int main(int argc, char *argv[])
         text_buffer_add(&run.line, PROGRAM " %s\n", tapemark_version());
         break;
     case OPTIONS_WRONG:
-        print_error(NULL, error.text);
+        error_line_print(PROGRAM, NULL, error.text);
         return EXIT_BAD_USAGE;
     case OPTIONS_RUN: {
         int status = run_all(&run);

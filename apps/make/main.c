@@ -1,4 +1,5 @@
 /* tapemark-make: a tape to print, and its map, from a floor plan. */
+#include "error_line.h"
 #include "layout_map.h"
 #include "make_options.h"
 #include "make_summary.h"
@@ -24,17 +25,6 @@ typedef struct make_run {
     print_summary printed;
     error_text error;
 } make_run;
-
-/* One line whatever names of files hold. */
-static void print_error(const char *name, const char *text)
-{
-    char line[1000];
-    snprintf(line, sizeof line, "%.500s%s%s", name, name[0] == '\0' ? "" : ": ", text);
-    for (char *c = line; *c != '\0'; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f)
-            *c = '?';
-    fprintf(stderr, PROGRAM ": %s\n", line);
-}
 
 /* ---- The tape ------------------------------------------------------------------------------------------------ */
 
@@ -66,10 +56,11 @@ static void shorten_quick_plan(make_run *run)
 static bool prepare_tape(make_run *run)
 {
     const char *path = run->options.plan_path;
+    const char *subject = path != NULL ? path : run->wanted.cms_wanted > 0 ? "--cms" : "--line";
     bool done = (path != NULL ? plan_read(path, &run->wanted, &run->error) : make_quick_plan(run)) &&
                 layout_make(&run->wanted, &run->layout, &run->error);
     if (!done)
-        print_error(path != NULL ? path : run->wanted.cms_wanted > 0 ? "--cms" : "--line", run->error.text);
+        error_line_print(PROGRAM, subject, run->error.text);
     else if (run->wanted.cms_wanted > 0)
         shorten_quick_plan(run);
     return done;
@@ -85,7 +76,7 @@ static bool check_only(const make_run *run)
         error_text error;
         error_text_set(&error, "%d..%d is not all on this tape, which has the ids %d to %d", (int)range.first,
                        (int)range.last, first, last);
-        print_error("--only", error.text);
+        error_line_print(PROGRAM, "--only", error.text);
         return false;
     }
     return true;
@@ -183,18 +174,18 @@ static bool make_output(make_run *run)
     const char *path = run->options.output_path;
     run->output = output_directory_open(path, &run->error);
     if (run->output == NULL) {
-        print_error(path, run->error.text);
+        error_line_print(PROGRAM, path, run->error.text);
         return false;
     }
     if (!write_all(run)) {
         output_directory_rename_in_error(run->output, &run->error);
         output_directory_discard(run->output);
-        print_error("", run->error.text);
+        error_line_print(PROGRAM, NULL, run->error.text);
         return false;
     }
     if (output_directory_publish(run->output, &run->error))
         return true;
-    print_error(path, run->error.text);
+    error_line_print(PROGRAM, path, run->error.text);
     return false;
 }
 
@@ -233,7 +224,7 @@ static int run_program(int argc, char *argv[], make_run *run)
         printf(PROGRAM " %s\n", tapemark_version());
         return EXIT_SUCCESS;
     case MAKE_WRONG:
-        print_error("", run->error.text);
+        error_line_print(PROGRAM, NULL, run->error.text);
         return EXIT_BAD_USAGE;
     case MAKE_RUN:
         break;
@@ -245,12 +236,12 @@ int main(int argc, char *argv[])
 {
     make_run run = {0};
     if (!process_prepare()) {
-        print_error("standard output", "is closed");
+        error_line_print(PROGRAM, "standard output", "is closed");
         return EXIT_BAD_INPUT;
     }
     int status = run_program(argc, argv, &run);
     if (fflush(stdout) != 0 && status == EXIT_SUCCESS) {
-        print_error("standard output", strerror(errno));
+        error_line_print(PROGRAM, "standard output", strerror(errno));
         status = EXIT_BAD_INPUT;
     }
     layout_release(&run.layout);

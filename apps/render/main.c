@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "error_line.h"
 #include "frame_output.h"
 #include "output_file.h"
 #include "process.h"
@@ -14,13 +15,9 @@
 
 enum { EXIT_BAD_INPUT = 1, EXIT_BAD_USAGE = 2 };
 
-/* One line, whatever the text holds. */
 static int fail(int status, const error_text *error)
 {
-    fputs(PROGRAM ": ", stderr);
-    for (const char *at = error->text; *at != '\0'; at++)
-        fputc((unsigned char)*at < 0x20 || *at == 0x7f ? '?' : *at, stderr);
-    fputc('\n', stderr);
+    error_line_print(PROGRAM, NULL, error->text);
     return status;
 }
 

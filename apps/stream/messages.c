@@ -9,7 +9,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "text_buffer.h"
+#include "error_line.h"
+
+#define PROGRAM "tapemark-stream"
 
 static int people = STDERR_FILENO;
 
@@ -41,7 +43,7 @@ static bool write_line(const char *text)
 static void tell_of_those_left_out(unsigned count)
 {
     char line[100];
-    snprintf(line, sizeof line, "tapemark-stream: %u messages were left out here: nobody read them\n", count);
+    snprintf(line, sizeof line, PROGRAM ": %u messages were left out here: nobody read them\n", count);
     if (!write_line(line))
         atomic_fetch_add(&left_out, count);
 }
@@ -49,17 +51,11 @@ static void tell_of_those_left_out(unsigned count)
 void message_tell(const char *subject, const char *text)
 {
     text_buffer line = {0};
-    text_buffer_add(&line, "tapemark-stream: ");
-    if (subject != NULL) {
-        text_buffer_add_printable(&line, subject);
-        text_buffer_add(&line, ": ");
-    }
-    text_buffer_add_printable(&line, text);
-    text_buffer_add(&line, "\n");
+    error_line_add(&line, PROGRAM, subject, text);
     unsigned before = atomic_exchange(&left_out, 0);
     if (before > 0)
         tell_of_those_left_out(before);
-    if (!write_line(line.failed ? "tapemark-stream: not enough memory\n" : line.text))
+    if (!write_line(line.failed ? PROGRAM ": not enough memory\n" : line.text))
         atomic_fetch_add(&left_out, 1);
     text_buffer_release(&line);
 }

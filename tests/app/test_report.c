@@ -8,8 +8,6 @@
 
 #include <cjson/cJSON.h>
 
-#include <math.h>
-
 #define SQUARE(x, y) {{(x), (y)}, {(x) + 10, (y)}, {(x) + 10, (y) + 5}, {(x), (y) + 5}}
 
 static tapemark_cm cms[] = {
@@ -172,51 +170,6 @@ static void every_limit_has_a_name(void **state)
     assert_null(report_limit_name(SUMMARY_LIMITS));
 }
 
-static void sources_are_escaped(void **state)
-{
-    static const struct {
-        const char *source;
-        const char *json;
-    } cases[] = {
-        {"a \"b\"\\c\n\x01", "\"a \\\"b\\\"\\\\c\\u000a\\u0001\""},
-        {"gr\xc3\xbc\xc3\x9f \xf0\x9f\x8e\xac", "\"gr\xc3\xbc\xc3\x9f \xf0\x9f\x8e\xac\""},
-        {"\xff\xc3(", "\"\\ufffd\\ufffd(\""},                              /* no UTF-8 */
-        {"\xc0\xaf", "\"\\ufffd\\ufffd\""},                                /* overlong */
-        {"\xed\xa0\x80", "\"\\ufffd\\ufffd\\ufffd\""},                     /* half of a surrogate pair */
-        {"\xf4\x90\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\""},          /* beyond U+10FFFF */
-        {"\xf8\x88\x80\x80\x80", "\"\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd\""},
-        {"end\xe2\x82", "\"end\\ufffd\\ufffd\""},                          /* cut */
-        {"\x7f", "\"\\u007f\""},
-    };
-    (void)state;
-    for (size_t i = 0; i < COUNT_OF(cases); i++) {
-        text_buffer text = {0};
-        text_buffer_add_json_string(&text, cases[i].source);
-        assert_string_equal(text.text, cases[i].json);
-        text_buffer_release(&text);
-    }
-}
-
-static void messages_are_printable(void **state)
-{
-    text_buffer text = {0};
-    (void)state;
-    text_buffer_add_printable(&text, "gr\xc3\xbc\xc3\x9f\n\x1b[2J\x7f\xff%s\xc2\x9b" "2J\xc2\xa0.");
-    assert_string_equal(text.text, "gr\xc3\xbc\xc3\x9f??[2J??%s?2J\xc2\xa0.");
-    text_buffer_release(&text);
-}
-
-static void numbers_that_json_lacks_are_null(void **state)
-{
-    text_buffer text = {0};
-    (void)state;
-    text_buffer_add_json_number(&text, 1.0 / 3, 2);
-    text_buffer_add_json_number(&text, -INFINITY, 2);
-    text_buffer_add_json_number(&text, NAN, 2);
-    assert_string_equal(text.text, "0.33nullnull");
-    text_buffer_release(&text);
-}
-
 /* ---- CSV and text -------------------------------------------------------------------------------------------- */
 
 static size_t count_fields(const char *row)
@@ -250,17 +203,6 @@ static void csv_has_a_row_a_marker(void **state)
         assert_int_equal(count_fields(row), 24);
     text_buffer_release(&rows);
     text_buffer_release(&header);
-}
-
-static void csv_quotes_what_needs_it(void **state)
-{
-    text_buffer text = {0};
-    (void)state;
-    text_buffer_add_csv_field(&text, "plain.mp4");
-    text_buffer_add(&text, ";");
-    text_buffer_add_csv_field(&text, "a,\"b\"%s\nc");
-    assert_string_equal(text.text, "plain.mp4;\"a,\"\"b\"\"%s\nc\"");
-    text_buffer_release(&text);
 }
 
 static void text_has_a_line_a_marker(void **state)
@@ -444,11 +386,7 @@ int main(void)
         cmocka_unit_test(tm_lists_its_cms_in_slot_order),
         cmocka_unit_test(limits_are_named),
         cmocka_unit_test(every_limit_has_a_name),
-        cmocka_unit_test(sources_are_escaped),
-        cmocka_unit_test(messages_are_printable),
-        cmocka_unit_test(numbers_that_json_lacks_are_null),
         cmocka_unit_test(csv_has_a_row_a_marker),
-        cmocka_unit_test(csv_quotes_what_needs_it),
         cmocka_unit_test(text_has_a_line_a_marker),
         cmocka_unit_test(json_has_places_and_agreement),
         cmocka_unit_test(json_tells_why_a_tm_does_not_agree),

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "clutter_options.h"
+#include "error_line.h"
 #include "findings.h"
 #include "kinds.h"
 #include "output_file.h"
@@ -29,13 +30,9 @@ typedef struct clutter_run {
     bool any_read;
 } clutter_run;
 
-/* One line, whatever the text holds. */
 static int fail(int status, const error_text *error)
 {
-    fputs(PROGRAM ": ", stderr);
-    for (const char *at = error->text; *at != '\0'; at++)
-        fputc((unsigned char)*at < 0x20 || *at == 0x7f ? '?' : *at, stderr);
-    fputc('\n', stderr);
+    error_line_print(PROGRAM, NULL, error->text);
     return status;
 }
 

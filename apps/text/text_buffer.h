@@ -1,6 +1,6 @@
 /* Text that grows: a whole line is put together before it is written. */
-#ifndef DECODE_TEXT_BUFFER_H
-#define DECODE_TEXT_BUFFER_H
+#ifndef TEXT_TEXT_BUFFER_H
+#define TEXT_TEXT_BUFFER_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,7 +22,7 @@ void text_buffer_add(text_buffer *buffer, const char *format, ...);
 /* Adds a JSON string with its quotes. Bytes that are no UTF-8 become U+FFFD. */
 void text_buffer_add_json_string(text_buffer *buffer, const char *text);
 
-/* Adds text for a terminal: what is no UTF-8 or a control character becomes a question mark. */
+/* Adds text for a terminal: what is no UTF-8 or a control character, C1 included, becomes a question mark. */
 void text_buffer_add_printable(text_buffer *buffer, const char *text);
 
 /* Adds a number with so many decimals; null for those that JSON does not know. */
