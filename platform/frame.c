@@ -143,7 +143,8 @@ bool frame_layout_parse(const char *text, frame_layout *layout, error_text *erro
     }
     layout->stride_bytes = stride;
     if (frame_layout_size_bytes(layout) == 0) {
-        error_text_set(error, "a frame of %.80s is too large: at most %d MiB are possible", text, FRAME_BYTES_MAX >> 20);
+        error_text_set(error, "a frame of %.80s is too large: at most %d MiB are possible", text,
+                       FRAME_BYTES_MAX >> 20);
         return false;
     }
     return true;

@@ -50,8 +50,8 @@ gpio_input *gpio_input_open(const char *name, error_text *error);
 int gpio_input_descriptor(const gpio_input *line);
 
 /* How often the line went on since the last call, without waiting. What comes within 50 ms of the time before is a
- * contact that bounces, or a wire that hums, and does not count. False once, with the reason, when the line has failed;
- * after that it is as if nothing happened on it. */
+ * contact that bounces, or a wire that hums, and does not count. False once, with the reason, when the line has
+ * failed; after that it is as if nothing happened on it. */
 bool gpio_input_events(gpio_input *line, unsigned *count, error_text *error);
 
 /* NULL is fine. */

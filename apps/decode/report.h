@@ -26,7 +26,8 @@ typedef struct frame_report {
  * with first the CMs, {"type":"cm","id":-20,"corners":[[x,y] four times],"confidence":0.98,"doubtful":3,
  * "corrected":0,"tm":0,"slot":2,"x":1.25,"y":2,"direction_deg":90}, then the TMs, {"type":"tm","code":"000101",
  * "directed":true,"corners":…,"confidence":0.9,"cms":[-48,-49],"vote":1,"x":…,"y":…,"direction_deg":…,
- * "agrees":true}. "tm" is an index among the TMs of the line; "cms" are the ids read in a TM, in the order of their slots.
+ * "agrees":true}. "tm" is an index among the TMs of the line; "cms" are the ids read in a TM, in the order of
+ * their slots.
  *
  * With a map: "x" and "y" are the marker's middle on the plan in metres, "direction_deg" the direction in which it
  * reads there, clockwise from the x axis; they are there only where the map tells. "agrees" says whether a TM and the

@@ -286,7 +286,8 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
  *
  *     static const int32_t ids[] = {-2, -1, 0, 3};
  *     static const tapemark_map_cm cms[] = {
- *         {2.43f, 0.11f, 1, 0, 0, 2}, {2.21f, 0.11f, 1, 0, 0, 1}, {2, 0.11f, 1, 0, 0, 0}, {3.5f, 0.2f, 0, 0, -1, -1}};
+ *         {2.43f, 0.11f, 1, 0, 0, 2}, {2.21f, 0.11f, 1, 0, 0, 1}, {2, 0.11f, 1, 0, 0, 0},
+ *         {3.5f, 0.2f, 0, 0, -1, -1}};
  *     static const tapemark_map_tm tms[] = {{4, 3, true, 2.21f, 0.11f, 1, 0}};
  *     static const tapemark_map map = {ids, cms, 4, tms, 1};
  *

@@ -25,7 +25,7 @@ enum { TMI_SMALLEST_SIDE = 8 };
 /* Places are interpolated between pixels in steps of 1/256 px. */
 enum { TMI_STEPS_PER_PX = 256 };
 
-/* Bilinear interpolation at a place in steps, whole pixel and the next ones within the image; 65536 times the gray. */
+/* Bilinear interpolation at a place in steps, its pixel and the next ones within the image; 65536 times the gray. */
 static inline int32_t tmi_interpolate(const tmi_view *view, uint32_t x_steps, uint32_t y_steps)
 {
     const int32_t part_x = (int32_t)(x_steps % TMI_STEPS_PER_PX), part_y = (int32_t)(y_steps % TMI_STEPS_PER_PX);

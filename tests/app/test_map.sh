@@ -60,8 +60,8 @@ expect out ',"x":0.5200,"y":0.0200,"direction_deg":0.00,"agrees":null,"reason":"
 
 # ---- Maps that are refused ------------------------------------------------------------------------------------
 
-# refusal TEXT SED-COMMAND: the map changed so is refused with one line. What else can be wrong with a map, test_map_own
-# and test_map_file know.
+# refusal TEXT SED-COMMAND: the map changed so is refused with one line. What else can be wrong with a map,
+# test_map_own and test_map_file know.
 refusal() {
     sed -e "$2" map.json >refused.json
     expect_refusal 1 "tapemark-decode: refused.json: $1" --map refused.json tm.pgm

@@ -52,7 +52,8 @@ grep -q "{\"type\":\"tm\",\"code\":\"100\",\"directed\":true,$corners,\"confiden
 
 run 0 --format csv cm.pgm tm.pgm
 expect_lines out 6
-expect out 'source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,confidence,cms,x,y,direction_deg,agrees,reason'
+expect out "source,frame,width,height,decode_us,type,id,code,directed,x0,y0,x1,y1,x2,y2,x3,y3,confidence,cms,x,y,\
+direction_deg,agrees,reason"
 [ "$(cut -d , -f 1,2,6-9 out | sed -n '2p;6p' | tr '\n' ' ')" = 'cm.pgm,0,cm,-20,, tm.pgm,0,tm,,100,1 ' ] ||
     fail 'csv rows'
 

@@ -19,7 +19,8 @@ set(allowed_symbols memcpy memmove memset memcmp _GLOBAL_OFFSET_TABLE_)
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "armhf")
     list(APPEND allowed_symbols __aeabi_idiv __aeabi_idivmod __aeabi_uidiv __aeabi_uidivmod)
 endif()
-# There, whoever calls provides 160 bytes in its own frame for the registers of what is called; a chain has eight calls.
+# There, whoever calls provides 160 bytes in its own frame for the registers of what is called; a chain has eight
+# calls.
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "s390x")
     math(EXPR frame_limit_bytes "${frame_limit_bytes} + 160")
     math(EXPR depth_limit_bytes "${depth_limit_bytes} + 8 * 160")

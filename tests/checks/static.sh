@@ -1,8 +1,9 @@
 #!/bin/sh
 # Usage: static.sh BUILD_DIR [deep]
-# clang-tidy, clang's analyzer and cppcheck over all C that was configured in BUILD_DIR. What they look at and what not
-# stands with its reasons in .clang-tidy, tests/.clang-tidy and cppcheck.suppressions. The analyzer follows the library
-# alone, and each function not for long; with "deep" everything, for as long as it takes: a quarter of an hour.
+# clang-tidy, clang's analyzer and cppcheck over all C that was configured in BUILD_DIR. What they look at and what
+# not stands with its reasons in .clang-tidy, tests/.clang-tidy and cppcheck.suppressions. The analyzer follows the
+# library alone, and each function not for long; with "deep" everything, for as long as it takes: a quarter of an
+# hour.
 set -eu
 build=$(cd "$1" && pwd)
 deep=${2:-}

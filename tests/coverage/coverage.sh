@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: coverage.sh BUILD_DIR
-# Runs the tests of a build of the preset "coverage", prints what they reached of lib, file by file, and what lines they
-# did not, with the reason where unreached.txt has one. Fails below 95 % of lines or 90 % of branches of the whole, and
-# below 90 % or 80 % of a file.
+# Runs the tests of a build of the preset "coverage", prints what they reached of lib, file by file, and what lines
+# they did not, with the reason where unreached.txt has one. Fails below 95 % of lines or 90 % of branches of the
+# whole, and below 90 % or 80 % of a file.
 set -eu
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
@@ -12,7 +12,8 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 find "$build" -name '*.gcda' -delete
-ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --timeout 600 -R '^(unit|link|decode)/' >"$work/tests" || {
+ctest --test-dir "$build" -j "$(nproc)" --output-on-failure --timeout 600 -R '^(unit|link|decode)/' \
+    >"$work/tests" || {
     cat "$work/tests"
     exit 1
 }
@@ -43,7 +44,10 @@ done <"$work/unreached"
 
 awk -F, '
     function part(covered, total) { return total > 0 ? 100 * covered / total : 100 }
-    function row(name, lines, branches) { printf "%-36s %6.1f %% of lines %6.1f %% of branches\n", name, lines, branches }
+    function row(name, lines, branches)
+    {
+        printf "%-36s %6.1f %% of lines %6.1f %% of branches\n", name, lines, branches
+    }
     NR == 1 {
         if ($2 != "line_total" || $3 != "line_covered" || $5 != "branch_total" || $6 != "branch_covered") {
             print "gcovr writes other columns than this script reads"
@@ -56,7 +60,10 @@ awk -F, '
         row($1, lines, branches)
         all_lines += $2; lines_reached += $3; all_branches += $5; branches_reached += $6
         # Of a header of a few lines, one branch is a large part.
-        if ($5 >= 20 && (lines < 90 || branches < 80)) { print $1 ": below 90 % of lines or 80 % of branches"; failed = 1 }
+        if ($5 >= 20 && (lines < 90 || branches < 80)) {
+            print $1 ": below 90 % of lines or 80 % of branches"
+            failed = 1
+        }
     }
     END {
         lines = part(lines_reached, all_lines); branches = part(branches_reached, all_branches)

@@ -170,8 +170,8 @@ static void segments_without_bars_are_no_tms(void **state)
         assert_int_equal(got->cms[i].tm, -1);
 }
 
-/* As a printed tape hangs: pieces with their quiet zones, four modules between the bars. There are more finders in the
- * row than one look at it holds. */
+/* As a printed tape hangs: pieces with their quiet zones, four modules between the bars. There are more finders in
+ * the row than one look at it holds. */
 static void reads_a_wall_full_of_tape(void **state)
 {
     (void)state;

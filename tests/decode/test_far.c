@@ -244,7 +244,8 @@ static void far_bars_covered_in_part_make_no_wrong_tm(void **state)
     int read = 0;
     for (int i = 0; i < 40; i++) {
         const double px = i & 1 ? 1.2 : 0.9, half_px = px * (25 * 5 + 7 + 16) / 2;
-        one_tape all = place_tape(scene_default(320, 120), ids, COUNT_OF(ids), true, (scene_pose){.px_per_module = px});
+        const scene_pose pose = {.px_per_module = px};
+        one_tape all = place_tape(scene_default(320, 120), ids, COUNT_OF(ids), true, pose);
         const double end_px = half_px - 3.5 * px;
         const scene_cover cover = {.x_px = i & 2 ? 160 - end_px : 160 + end_px, .y_px = 60 + 3.5 * px,
                                    .width_px = 9 * px, .height_px = 0.4 * (1 + i / 4) * 2 * px,

@@ -60,7 +60,8 @@ static void what_speaks_against_a_reading_is_named(void **state)
     assert_int_equal(judge_one(seen(TMI_NO_ID, 4)), TAPEMARK_REJECT_SCORE);
 }
 
-/* Ids ascend along a tape, whichever way it is seen: one that does is believed on less, one that does not needs more. */
+/* Ids ascend along a tape, whichever way it is seen: one that does is believed on less, one that does not needs
+ * more. */
 static void sure_neighbours_count(void **state)
 {
     (void)state;

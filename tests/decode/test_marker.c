@@ -145,8 +145,8 @@ static void samples_cells_as_printed(void **state)
     }
 }
 
-/* So do they where a shadow's edge runs across the CM between two finder patterns, in which dark cells in the light are
- * as bright as light ones in the shade. */
+/* So do they where a shadow's edge runs across the CM between two finder patterns, in which dark cells in the light
+ * are as bright as light ones in the shade. */
 static void samples_cells_across_a_shadows_edge(void **state)
 {
     (void)state;

@@ -135,7 +135,8 @@ static void matches_under_blur(void **state)
             }
 }
 
-/* Cells too narrow to be resolved are not enough for an id, however well they fit; with another CM's word they are. */
+/* Cells too narrow to be resolved are not enough for an id, however well they fit; with another CM's word they
+ * are. */
 static void narrow_cells_need_support(void **state)
 {
     (void)state;

@@ -28,7 +28,7 @@ for kind in finder-lattice finder-rows random-cells; do
     [ "$(numbers frames_with_candidates $kind)" -ge $((frames / 2)) ] || fail "hardly anything to be read in $kind"
 done
 
-# ---- Frames that once misled ----------------------------------------------------------------------------------------
+# ---- Frames that once misled ---------------------------------------------------------------------------------------
 
 # Finder patterns with stripes, checks and dots between them, whose best words happened to ascend; the same between
 # gratings that passed for bars; blocks between bars, too small for the patterns to be seen.
@@ -62,7 +62,7 @@ run 0 --sheets sheets --kinds tape --frames 12 -o report.json
 expect_lines out 0
 grep -q '"id":-6,' report.json || fail "no report in its file"
 
-# ---- A frame depends on its kind, number and seed alone -------------------------------------------------------------
+# ---- A frame depends on its kind, number and seed alone ------------------------------------------------------------
 
 bytes=$((640 * 480))
 run 0 --kinds shelves,stripes --frames 3 --raw all.raw
@@ -72,7 +72,7 @@ tail -c $((2 * bytes)) all.raw | cmp -s - out || fail "other frames when begun l
 run 0 --kinds stripes --first 1 --frames 2 --seed 2 --raw - -o report.json
 tail -c $((2 * bytes)) all.raw | cmp -s - out && fail "the same frames with another seed"
 
-# ---- What is wrong is told in one line ------------------------------------------------------------------------------
+# ---- What is wrong is told in one line -----------------------------------------------------------------------------
 
 expect_refusal 2 "--kinds: a name in 'tiles,slates' is of no kind" --kinds tiles,slates
 expect_refusal 2 "--frames" --frames 0

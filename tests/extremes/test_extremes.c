@@ -1,5 +1,5 @@
-/* Frames of the most unlikely sizes and contents. Each is done within bounded work, and bounded processor time, nothing
- * is read that is not there, and the limits tell "nothing found" from "could not finish". */
+/* Frames of the most unlikely sizes and contents. Each is done within bounded work, and bounded processor time,
+ * nothing is read that is not there, and the limits tell "nothing found" from "could not finish". */
 #define _DEFAULT_SOURCE /* MAP_ANONYMOUS */
 #include "decoding.h"
 

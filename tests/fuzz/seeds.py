@@ -273,8 +273,9 @@ def lines():
     put("receiver", "both", b"".join(vectors("sentence")) + b"".join(vectors("packet")))
     commands = [("PING", "", "hello"), ("VERSION", "", ""), ("GET", "exposure", ""), ("GET", "roi", ""),
                 ("SET", "exposure", "500"), ("SET", "exposure", "auto"), ("SET", "gain", "250"),
-                ("SET", "rate", "max"), ("SET", "rate", "305"), ("SET", "encoding", "cobs"), ("SET", "roi", "64x48+8+8"),
-                ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""), ("GET", "encoding", ""),
+                ("SET", "rate", "max"), ("SET", "rate", "305"), ("SET", "encoding", "cobs"),
+                ("SET", "roi", "64x48+8+8"), ("SET", "roi", "full"), ("GET", "rate", ""), ("GET", "gain", ""),
+                ("GET", "encoding", ""),
                 ("SET", "roi", "65535x65535+65535+65535"), ("SET", "roi", "9x9+2147483640+0"),
                 ("SET", "roi", "100x400+300+300"), ("SET", "roi", "600x10+300+0"), ("SET", "gain", "65536"),
                 ("SET", "exposure", "10000001")]

@@ -21,7 +21,7 @@ typedef struct sketched_tape {
     uint8_t dark, light;
 } sketched_tape;
 
-/* ---- Tapes ------------------------------------------------------------------------------------------------------ */
+/* ---- Tapes ----------------------------------------------------------------------------------------------------- */
 
 /* Ids that ascend by one, with signs as a code has them, or any. */
 static size_t read_ids(byte_script *script, int32_t *ids, bool *bars)
@@ -112,7 +112,7 @@ static void draw(const sketched_tape *tape, const tape_sketch *picture)
     }
 }
 
-/* ---- Damage ----------------------------------------------------------------------------------------------------- */
+/* ---- Damage ---------------------------------------------------------------------------------------------------- */
 
 static void blur(const tape_sketch *picture)
 {
@@ -185,7 +185,7 @@ static void mirror(const tape_sketch *picture)
     }
 }
 
-/* ---- The picture ------------------------------------------------------------------------------------------------ */
+/* ---- The picture ----------------------------------------------------------------------------------------------- */
 
 static void read_size(byte_script *script, tape_sketch *picture)
 {

@@ -8,7 +8,8 @@ static void claim_quick_plan(const make_options *options)
 {
     const plan *quick = &options->quick;
     CLAIM(isfinite(quick->module_mm) && quick->module_mm > 0);
-    CLAIM(quick->first_id >= 0 && quick->tm_cms >= 3 && quick->tm_cms <= quick->tm_cms_max && quick->tm_cms_max <= 32);
+    CLAIM(quick->first_id >= 0);
+    CLAIM(quick->tm_cms >= 3 && quick->tm_cms <= quick->tm_cms_max && quick->tm_cms_max <= 32);
     CLAIM(isfinite(options->quick_length_m) && options->quick_length_m >= 0);
     CLAIM(options->quick_length_m > 0 || quick->cms_wanted > 0);
 }

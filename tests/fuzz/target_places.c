@@ -1,5 +1,5 @@
-/* The library's look-up of places, over tables that hold anything: no memory outside of them may be touched, and those
- * that are found in order have to answer rightly. */
+/* The library's look-up of places, over tables that hold anything: no memory outside of them may be touched, and
+ * those that are found in order have to answer rightly. */
 #include "byte_script.h"
 #include "tapemark.h"
 

@@ -1,4 +1,5 @@
-/* The microcontroller's end of the link: any bytes on the line. What it accepts is what a sender would have written. */
+/* The microcontroller's end of the link: any bytes on the line. What it accepts is what a sender would have
+ * written. */
 #include <string.h>
 
 #include "byte_script.h"

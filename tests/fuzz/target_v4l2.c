@@ -39,7 +39,8 @@ static void read_steps(byte_script *script)
 {
     fake.steps = (struct v4l2_frmsize_stepwise){
         .min_width = read_side(script, 16), .max_width = read_side(script, 1920), .step_width = read_side(script, 8),
-        .min_height = read_side(script, 16), .max_height = read_side(script, 1080), .step_height = read_side(script, 8)};
+        .min_height = read_side(script, 16), .max_height = read_side(script, 1080),
+        .step_height = read_side(script, 8)};
 }
 
 /* One thing wrong at a time mostly: the first one may hide all others. */
@@ -87,8 +88,9 @@ static void read_failure(byte_script *script)
                                              VIDIOC_S_CTRL, VIDIOC_QUERYCTRL, VIDIOC_QUERYCAP, VIDIOC_ENUM_FMT};
     static const int failures[] = {22, 16, 5, 19, 12, 25};
     if (is_rare(script))
-        fake_fail(requests[script_byte(script) % COUNT_OF(requests)], failures[script_byte(script) % COUNT_OF(failures)],
-                  script_byte(script) % 8, script_byte(script) % 4);
+        fake_fail(requests[script_byte(script) % COUNT_OF(requests)],
+                  failures[script_byte(script) % COUNT_OF(failures)], script_byte(script) % 8,
+                  script_byte(script) % 4);
 }
 
 static camera_wishes read_wishes(byte_script *script)

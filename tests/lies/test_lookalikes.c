@@ -1,5 +1,5 @@
-/* Things beside, on and over tapes that look like tapes: mirrors, other codes, tapes that cross, tapes pieced together,
- * tapes of other plans, tapes on screens. What is read is there, and where it is there. */
+/* Things beside, on and over tapes that look like tapes: mirrors, other codes, tapes that cross, tapes pieced
+ * together, tapes of other plans, tapes on screens. What is read is there, and where it is there. */
 #include "printed.h"
 
 #include <math.h>
@@ -144,7 +144,8 @@ static void crossing_tapes_are_not_mixed(void **state)
             scene_place(&view, &tapes[1], (scene_pose){.px_per_module = 3, .roll_deg = angle_deg, .dx_px = shift});
             view.tapes = tapes;
             view.tape_count = 2;
-            const decoding *got = decode_scene(&view, NULL, "crossing at %d degrees, shifted by %d", angle_deg, shift);
+            const decoding *got =
+                decode_scene(&view, NULL, "crossing at %d degrees, shifted by %d", angle_deg, shift);
             assert_nothing_wrong(got, &view);
             read += count_read(got);
         }
@@ -221,7 +222,8 @@ static void a_tape_on_a_screen_reads_right(void **state)
     print_segment(&print, 2, 1, ids, CMS, true);
     for (int y = 0; y < ROWS; y++)
         for (int x = 0; x < COLUMNS; x++) {
-            const uint8_t shade = print.shades[y / (CELL * PX_PER_MODULE) * print.columns + x / (CELL * PX_PER_MODULE)];
+            const int row = y / (CELL * PX_PER_MODULE), column = x / (CELL * PX_PER_MODULE);
+            const uint8_t shade = print.shades[row * print.columns + column];
             texels[y * COLUMNS + x] = x % CELL == 0 || y % CELL == 0 ? 10 : shade;
         }
     size_t read = 0, possible = 0;

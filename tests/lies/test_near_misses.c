@@ -1,5 +1,5 @@
-/* Code markers with cells that are wrong, alone: the id that was meant, or none; never another one, but where the cells
- * are exactly those that the other one prints. */
+/* Code markers with cells that are wrong, alone: the id that was meant, or none; never another one, but where the
+ * cells are exactly those that the other one prints. */
 #include "printed.h"
 
 static const double sizes_px[] = {1.6, 2.5, 4};
@@ -66,7 +66,8 @@ static void a_wrong_alignment_cell_is_seen(void **state)
                 const bool is_read = assert_this_id_or_none(got, true_ids[i], cells);
                 believed += is_read;
                 if (is_read && s > 0)
-                    fail_msg("%s: id %d with alignment cell %d wrong was believed", got->name, (int)true_ids[i], cell);
+                    fail_msg("%s: id %d with alignment cell %d wrong was believed", got->name, (int)true_ids[i],
+                             cell);
             }
         }
     }

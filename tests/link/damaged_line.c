@@ -79,7 +79,8 @@ static void send_noise(damaged_line *line)
 {
     static const char *const texts[] = {
         "$", "$$$$$$$$", "$PTMK", "$PTMKF,1,", "$PTMKA,1,OK,2,$PTMKA,1,OK,2,text", "\r", "\n", "\n\r\r\n", "*",
-        "*00\r\n", "$PTMK*4B\r\n", "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n", "U-Boot 2023.01\n",
+        "*00\r\n", "$PTMK*4B\r\n", "$GPGGA,123519,4807.038,N,01131.000,E,1,08,0.9,545.4,M,46.9,M,,*47\r\n",
+        "U-Boot 2023.01\n",
         "[    0.000000] Booting Linux on physical CPU 0x0\r\n", "\xff\xff\xff\xff", "\xf0\x0f", "login: ",
     };
     uint8_t piece[PIECE_MAX];

@@ -216,7 +216,8 @@ int gpiod_line_request_read_edge_events(struct gpiod_line_request *request, stru
     return count;
 }
 
-struct gpiod_edge_event *gpiod_edge_event_buffer_get_event(struct gpiod_edge_event_buffer *buffer, unsigned long index)
+struct gpiod_edge_event *gpiod_edge_event_buffer_get_event(struct gpiod_edge_event_buffer *buffer,
+                                                           unsigned long index)
 {
     errno = EINVAL;
     return index < buffer->count ? &buffer->events[index] : NULL;

@@ -91,7 +91,8 @@ void a_row_has_its_gaps_and_its_middle(void **)
     const view seen = render("--ids 5 --ids 6 --module 10mm --gap 100mm --distance 1m --focal 500 --x 10 --y -20");
     const auto &left = seen.truth[0].cms.at(0).corners, &right = seen.truth[0].cms.at(1).corners;
     const double edges[] = {10 - 25 - 160, 10 - 25, 10 + 25, 10 + 25 + 160}, middle_x = 319.5, middle_y = 239.5;
-    assert_true(std::fabs(left[0].x - middle_x - edges[0]) < 0.02 && std::fabs(left[1].x - middle_x - edges[1]) < 0.02);
+    assert_true(std::fabs(left[0].x - middle_x - edges[0]) < 0.02);
+    assert_true(std::fabs(left[1].x - middle_x - edges[1]) < 0.02);
     assert_true(std::fabs(right[0].x - middle_x - edges[2]) < 0.02);
     assert_true(std::fabs(right[1].x - middle_x - edges[3]) < 0.02);
     assert_true(std::fabs((left[0].y + left[3].y) / 2 - middle_y + 20) < 0.02);
@@ -266,7 +267,8 @@ void an_open_shutter_blurs_as_far_as_things_move(void **)
 void what_is_looked_at_stays_sharp(void **)
 {
     write_text("around.csv", "time_s,x_m,y_m,height_m,heading_deg\n0,1,1,0.5,5.7106\n1,1,1.4,0.5,-5.7106\n");
-    const std::string scene = "--ids 5 --at 3,1.2,0.5,180 --fps 2 --focal 800 --size 640x240 --noise 0 --shot-noise 0 ";
+    const std::string scene =
+        "--ids 5 --at 3,1.2,0.5,180 --fps 2 --focal 800 --size 640x240 --noise 0 --shot-noise 0 ";
     const cv::Range tape(90, 150);
     const cv::Mat still = render(scene + "--path around.csv", 3).frames[1].rowRange(tape);
     const cv::Mat open = render(scene + "--path around.csv --shutter 50ms", 3).frames[1].rowRange(tape);

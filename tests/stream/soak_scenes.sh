@@ -1,8 +1,8 @@
 #!/bin/sh
 # Usage: soak_scenes.sh BUILD_FOLDER FOLDER
 # Renders what the long soak plays: recordings into FOLDER/recordings, and the truth about all their frames, in the
-# order in which a directory is played, into FOLDER/truth.jsonl. About 1500 frames: walks, rooms, tapes that are far away,
-# oblique, blurred, dark, over-exposed, in shadow, covered or damaged, and clutter without any tape.
+# order in which a directory is played, into FOLDER/truth.jsonl. About 1500 frames: walks, rooms, tapes that are far
+# away, oblique, blurred, dark, over-exposed, in shadow, covered or damaged, and clutter without any tape.
 set -eu
 render=$1/bin/tapemark-render
 folder=$2

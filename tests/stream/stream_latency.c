@@ -7,8 +7,8 @@
  *     last byte   the last byte of the frame's markers; a serial line carries each as its rate has it
  *     rest        that, less the wire's time for these bytes, and less what decoding this very picture takes,
  *                 measured beforehand at rest: what the machine's other work adds stays in it
- *     sleeper     how late a thread was woken meanwhile that does nothing but sleep for a frame time, again and again:
- *                 what of the rest is the machine's
+ *     sleeper     how late a thread was woken meanwhile that does nothing but sleep for a frame time, again and
+ *                 again: what of the rest is the machine's
  * each as median, 99th percentile and greatest, of FRAMES frames (600 unless told). A terminal stands for the serial
  * port; what lies between age and first byte is the time that the kernel takes to hand bytes over in it, which a busy
  * machine stretches and a real port does not know.

@@ -3,9 +3,9 @@
  * Runs tapemark-stream flat out over a recording (or a directory of them) that begins again and again, until so many
  * frames went by (100000 unless told), and does to it what happens in weeks, each at least twice: the line stalls, is
  * read at another rate, comes back as an echo, the port is pulled out and comes back, rubbish comes as commands,
- * settings are read again; and bytes are damaged on the way all the time. Every record that the receiver takes is held
- * against the truth, each frame has to come, to be told of as dropped, or to be one that harm was done to; memory and
- * descriptors have to stay as they are.
+ * settings are read again; and bytes are damaged on the way all the time. Every record that the receiver takes is
+ * held against the truth, each frame has to come, to be told of as dropped, or to be one that harm was done to;
+ * memory and descriptors have to stay as they are.
  */
 #include <signal.h>
 #include <stdio.h>

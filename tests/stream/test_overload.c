@@ -57,8 +57,8 @@ static ages watch(timed_line *line, int64_t camera_frame_ns)
     return seen;
 }
 
-/* Rounding takes up to 10 us off an age. A busy machine lets bytes lie before they are seen, for seconds, most of them
- * even; but whoever told ages that are not would not be right a single time. */
+/* Rounding takes up to 10 us off an age. A busy machine lets bytes lie before they are seen, for seconds, most of
+ * them even; but whoever told ages that are not would not be right a single time. */
 static void assert_young_and_honest(const ages *seen)
 {
     assert_int_equal(seen->too_old, 0);

@@ -1,5 +1,6 @@
 /* Two threads decode the same frames at once, each with its own workspace and result, and both read what one alone
- * reads. Built with ThreadSanitizer, which ends the program with an error when they share anything that is written. */
+ * reads. Built with ThreadSanitizer, which ends the program with an error when they share anything that is
+ * written. */
 #include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>

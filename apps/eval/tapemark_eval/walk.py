@@ -131,7 +131,7 @@ def _truth_of_scene(truth, marker):
 
 
 def _truth_of_video(truth, marker):
-    """Of the inventors' frames: which CMs are in view is known; of other systems' markers, only which ids there are."""
+    """Of the inventors' frames: which CMs are in view is known; of other systems' markers, which ids there are."""
     if marker != "tape":
         return FrameTruth([], VIDEO_IDS, set())
     unsure = [each for each in truth.get("uncertain", []) if isinstance(each, dict)]
