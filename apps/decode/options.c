@@ -1,5 +1,6 @@
 #include "options.h"
 
+#include "option_mistake.h"
 #include "option_values.h"
 
 #include <getopt.h>
@@ -172,19 +173,7 @@ options_answer options_parse(int argc, char *argv[], decode_options *options, er
             return OPTIONS_HELP;
         if (code == OPTION_VERSION)
             return OPTIONS_VERSION;
-        if (code == ':') {
-            error_text_set(error, "%s needs a value", argv[optind - 1]);
-            return OPTIONS_WRONG;
-        }
-        if (code == '?') {
-            if (optopt > 0 && optopt < OPTION_MAP)
-                error_text_set(error, "unknown option '-%c' (--help lists all)", optopt);
-            else
-                error_text_set(error, "option '%.80s' is unknown, ambiguous or takes no value (--help lists all)",
-                               argv[optind - 1]);
-            return OPTIONS_WRONG;
-        }
-        if (!apply_option(code, optarg, options, error))
+        if (option_is_mistake(code, argv, error) || !apply_option(code, optarg, options, error))
             return OPTIONS_WRONG;
     }
     options->inputs = argv + optind;

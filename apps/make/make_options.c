@@ -1,6 +1,7 @@
 #include "make_options.h"
 
 #include "id_ranges.h"
+#include "option_mistake.h"
 #include "option_values.h"
 
 #include <getopt.h>
@@ -304,15 +305,6 @@ static bool complete(const option_set set, int plan_count, make_options *options
     return true;
 }
 
-static void explain_unknown(char *argv[], error_text *error)
-{
-    if (optopt > 0 && optopt < OPTION_LINE)
-        error_text_set(error, "unknown option '-%c' (--help lists all)", optopt);
-    else
-        error_text_set(error, "option '%.80s' is unknown, ambiguous or takes no value (--help lists all)",
-                       argv[optind - 1]);
-}
-
 make_answer make_options_parse(int argc, char *argv[], make_options *options, error_text *error)
 {
     *options = (make_options){.quick = {.module_mm = DEFAULT_HEIGHT_MM / TAPEMARK_HEIGHT_MODULES,
@@ -324,11 +316,7 @@ make_answer make_options_parse(int argc, char *argv[], make_options *options, er
     while ((code = getopt_long(argc, argv, ":o:", long_options, NULL)) != -1) {
         if (code == OPTION_HELP || code == OPTION_VERSION)
             return code == OPTION_HELP ? MAKE_HELP : MAKE_VERSION;
-        if (code == ':')
-            error_text_set(error, "%.80s needs a value", argv[optind - 1]);
-        if (code == '?')
-            explain_unknown(argv, error);
-        if (code == ':' || code == '?' || !apply_option(code, optarg, set, options, error))
+        if (option_is_mistake(code, argv, error) || !apply_option(code, optarg, set, options, error))
             return MAKE_WRONG;
     }
     options->plan_path = optind < argc ? argv[optind] : NULL;

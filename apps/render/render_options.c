@@ -3,6 +3,7 @@
 #include <getopt.h>
 #include <stdlib.h>
 
+#include "option_mistake.h"
 #include "option_values.h"
 #include "render_choices.h"
 #include "thing_options.h"
@@ -188,15 +189,6 @@ static void list_options(struct option *list)
     list[KNOWN_OPTIONS + 2] = (struct option){0};
 }
 
-static void tell_unknown(char *argv[], error_text *error)
-{
-    if (optopt > 0 && optopt < FIRST_CODE)
-        error_text_set(error, "unknown option '-%c' (--help lists all)", optopt);
-    else
-        error_text_set(error, "option '%.80s' is unknown, ambiguous or takes no value (--help lists all)",
-                       argv[optind - 1]);
-}
-
 static options_answer take_options(render_options *all, int argc, char *argv[], error_text *error)
 {
     struct option list[KNOWN_OPTIONS + 3];
@@ -208,14 +200,8 @@ static options_answer take_options(render_options *all, int argc, char *argv[], 
             return OPTIONS_HELP;
         if (code == CODE_VERSION)
             return OPTIONS_VERSION;
-        if (code == ':') {
-            error_text_set(error, "%s needs a value", argv[optind - 1]);
+        if (option_is_mistake(code, argv, error))
             return OPTIONS_WRONG;
-        }
-        if (code == '?') {
-            tell_unknown(argv, error);
-            return OPTIONS_WRONG;
-        }
         if (code == 'o')
             all->output_path = optarg;
         else if (!apply_option(all, &known_options[code - FIRST_CODE], optarg, error))

@@ -77,7 +77,7 @@ tail -c $((2 * bytes)) all.raw | cmp -s - out && fail "the same frames with anot
 expect_refusal 2 "--kinds: a name in 'tiles,slates' is of no kind" --kinds tiles,slates
 expect_refusal 2 "--frames" --frames 0
 expect_refusal 2 "--frames needs a value" --frames
-expect_refusal 2 "is no option" --colour
+expect_refusal 2 "option '--colour' is unknown, ambiguous or takes no value" --colour
 expect_refusal 2 "unexpected argument" tiles
 expect_refusal 2 "--raw and --output" --raw -
 expect_refusal 1 "nowhere" --sheets nowhere

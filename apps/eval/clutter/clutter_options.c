@@ -3,6 +3,7 @@
 #include <getopt.h>
 #include <string.h>
 
+#include "option_mistake.h"
 #include "option_values.h"
 
 const char *const clutter_usage =
@@ -84,12 +85,7 @@ options_answer clutter_options_parse(int argc, char *argv[], clutter_options *al
     for (int code; (code = getopt_long(argc, argv, ":o:", known_options, NULL)) != -1;) {
         if (code == CODE_HELP)
             return OPTIONS_HELP;
-        if (code == ':' || code == '?') {
-            const char *problem = code == ':' ? "needs a value" : "is no option (--help lists all)";
-            error_text_set(error, "%.80s %s", argv[optind - 1], problem);
-            return OPTIONS_WRONG;
-        }
-        if (!take(all, code, optarg, error))
+        if (option_is_mistake(code, argv, error) || !take(all, code, optarg, error))
             return OPTIONS_WRONG;
     }
     if (optind < argc) {
