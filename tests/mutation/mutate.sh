@@ -23,14 +23,18 @@ cp -R "$copy/lib" "$work"
 cmake -G Ninja -S "$copy" -B "$build" -DCMAKE_BUILD_TYPE=RelWithDebInfo -DTAPEMARK_BUILD_PROGRAMS=OFF \
     -DCMAKE_COMPILE_WARNING_AS_ERROR=OFF \
     -DCMAKE_C_FLAGS="-fsanitize=alignment,bounds -fno-sanitize-recover=all" >"$work/log"
-parts="tests/unit/all tests/link/all tests/decode/all"
+parts="tests/unit/all tests/link/all tests/decode/all tests/lies/all"
 # shellcheck disable=SC2086 # words of $parts are targets
 cmake --build "$build" --target $parts >"$work/log" || { cat "$work/log"; exit 1; }
+
+# Some broken lines make loops that do not end. Seconds of processor time: the machine may have other work.
+ulimit -t 200
 
 # Runs all tests; prints the name of the one that failed first.
 first_failure()
 {
-    ctest --test-dir "$build" -j "$(nproc)" --stop-on-failure --timeout 120 -R '^(unit|link|decode)/' 2>/dev/null |
+    ctest --test-dir "$build" -j "$(nproc)" --stop-on-failure --timeout 3000 \
+        -R '^(unit|link|decode|lies)/' 2>/dev/null |
         sed -n 's/^.*Test *#[0-9]*: \([^ ]*\) .*\*\*\*.*$/\1/p' | grep -v Skipped | head -n 1
 }
 
@@ -61,7 +65,7 @@ what_notices()
 {
     if ! cmake --build "$build" --target "$1" >"$work/log" 2>&1; then
         echo "DOES NOT COMPILE"
-    elif ! timeout 120 "$build/tests/bin/$1" >"$work/log" 2>&1; then
+    elif ! "$build/tests/bin/$1" >"$work/log" 2>&1; then
         echo "$1"
     else
         # shellcheck disable=SC2086 # words of $parts are targets
