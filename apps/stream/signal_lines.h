@@ -1,5 +1,5 @@
-/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and given back; from then on it is asked
- * for now and then. */
+/* The GPIO lines: seen, strobe and trigger. A line that fails is told of once and given back; from then on it is
+ * asked for now and then. */
 #ifndef STREAM_SIGNAL_LINES_H
 #define STREAM_SIGNAL_LINES_H
 

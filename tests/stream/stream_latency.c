@@ -14,8 +14,8 @@
  * machine stretches and a real port does not know.
  *
  * With BOUND_MS, it fails when the rest takes longer than that for half of the frames, or half of them need more
- * than a frame time to their last byte, but on a wire that takes as much by itself, each of many times; or when an age
- * is not as told.
+ * than a frame time to their last byte, but on a wire that takes as much by itself, each of many times; or when an
+ * age is not as told.
  */
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -250,7 +250,7 @@ static bool keeps_bounds(const way *out, measured *all, double bound_ms)
     return in_time && honest;
 }
 
-/* A machine with other work has the program wait for it: then once more, and again, as long as ages are told right. */
+/* A machine with other work has the program wait for it: then once more, and again, while ages are told right. */
 static bool measure_and_judge(way *out, char **arguments, size_t frames, double bound_ms, const pictures *known)
 {
     enum { TRIES_MAX = 20 };

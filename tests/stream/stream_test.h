@@ -78,8 +78,8 @@ static inline bool next_before_end(tapemark_record *record)
     return false;
 }
 
-/* Older than two frame times, which are those of the camera, or of the frames that the machine could take, where those
- * are further apart: of frames that are sent, each in its turn. */
+/* Older than two frame times, which are those of the camera, or of the frames that the machine could take, where
+ * those are further apart: of frames that are sent, each in its turn. */
 static inline bool is_too_old(const tapemark_frame_record *head, unsigned rate_hz)
 {
     static uint32_t last_us;
