@@ -106,9 +106,42 @@ static bool fit_trend(const tmi_view *view, const tmi_homography *map, const tmi
            tmi_normal_solve(&shear_u, trend->shear_u) && tmi_normal_solve(&shear_v, trend->shear_v);
 }
 
-static float trend_at(const float p[3], float u)
+/* By how much the trend moves what the map of the row has around finder i. */
+static tmi_offsets trend_at(const row_trend *trend, int i, int count)
 {
-    return p[0] + p[1] * u + p[2] * u * u;
+    const float u = 2 * (float)i / (float)(count - 1) - 1, uu = u * u;
+    const float *p = trend->shift_u, *q = trend->shift_v, *r = trend->shear_u, *s = trend->shear_v;
+    return (tmi_offsets){{p[0] + p[1] * u + p[2] * uu, 0, r[0] + r[1] * u + r[2] * uu},
+                         {q[0] + q[1] * u + q[2] * uu, 0, s[0] + s[1] * u + s[2] * uu}};
+}
+
+/* Modules that a finder's centre, and the middles of its upper and lower edge, may lie off from where its row has
+ * them. A centre that is off by more tells that the row is not straight, or not flat. */
+static const float astray = 0.4f, edge_astray = 0.6f;
+
+/* How far from this point of the finder another one is, in its modules. */
+static float apart(const tmi_finder *f, float v, tmi_point other)
+{
+    const tmi_point at = tmi_at(f, 0, v);
+    const float x = other.x - at.x, y = other.y - at.y;
+    const float along = real_abs(x * f->down.y - y * f->down.x), across = real_abs(y * f->right.x - x * f->right.y);
+    return real_max(along, across) / real_abs(f->right.x * f->down.y - f->right.y * f->down.x);
+}
+
+/* Whether all finders lie where the row has them, and lean with it, but for one in four. */
+static bool meets_finders(const tmi_homography *row, const row_trend *trend, const tmi_finder *finders, int count)
+{
+    int leaning = 0;
+    for (int i = 0; i < count; i++) {
+        const tmi_offsets by = trend_at(trend, i, count);
+        const float u = (float)(PITCH * i);
+        if (!(apart(&finders[i], 0, corrected(row, u, 0, &by)) < astray))
+            return false;
+        if (!(apart(&finders[i], -3.5f, corrected(row, u, -3.5f, &by)) < edge_astray &&
+              apart(&finders[i], 3.5f, corrected(row, u, 3.5f, &by)) < edge_astray))
+            leaning++;
+    }
+    return 4 * leaning <= count;
 }
 
 bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tmi_homography *maps, uint32_t *reads)
@@ -119,13 +152,12 @@ bool tmi_row_maps(const tmi_view *view, const tmi_finder *finders, int count, tm
     tmi_homography row;
     row_trend trend;
     map_corners(ends, (float)(PITCH * (count - 1)), &row);
-    if (count < 4 || !fit_trend(view, &row, finders, count, &trend, reads))
+    if (count < 4 || !fit_trend(view, &row, finders, count, &trend, reads) ||
+        !meets_finders(&row, &trend, finders, count))
         return false;
     tmi_point p[4];
     for (int i = 0; i < count; i++) {
-        const float u = 2 * (float)i / (float)(count - 1) - 1;
-        const tmi_offsets by = {{trend_at(trend.shift_u, u), 0, trend_at(trend.shear_u, u)},
-                                {trend_at(trend.shift_v, u), 0, trend_at(trend.shear_v, u)}};
+        const tmi_offsets by = trend_at(&trend, i, count);
         p[1] = corrected(&row, (float)(PITCH * i), -3.5f, &by);
         p[2] = corrected(&row, (float)(PITCH * i), 3.5f, &by);
         if (i > 0)
