@@ -121,8 +121,10 @@ static bool has_ended(stream *self, int64_t now_ns)
     if (self->end_ns == 0) {
         self->end_ns = now_ns + end_patience_ns;
         stream_tell_status(self, now_ns);
+        record_line_go_on(&self->line, now_ns);
     }
-    return record_line_is_idle(&self->line, now_ns) || now_ns >= self->end_ns;
+    /* The last byte may have left since `now_ns`. */
+    return record_line_is_idle(&self->line, camera_clock_ns()) || now_ns >= self->end_ns;
 }
 
 /* -1 while there is no reason to end. */

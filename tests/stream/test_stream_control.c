@@ -17,6 +17,33 @@ static void term_ends_within_a_frame(void **state)
     assert_string_equal(host.said, "");
 }
 
+static int64_t time_of_run(const char *const *arguments)
+{
+    const int64_t begin_ns = host_clock_ns();
+    start(arguments);
+    assert_int_equal(host_wait(&host, SOON_MS), 0);
+    assert_string_equal(host.said, "");
+    return host_clock_ns() - begin_ns;
+}
+
+/* With the last byte, and not after the time that this is given at most. A run that only begins and ends tells how
+ * long that takes on a busy machine. */
+static void recordings_end_at_once(void **state)
+{
+    (void)state;
+    enum { PATIENCE_MS = 2000 };
+    const int null_device = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    bool at_once = false;
+    host.output = null_device;
+    for (int tries = 0; tries < TRIES_MAX && !at_once; tries++) {
+        const int64_t begin_ns = time_of_run(ARGUMENTS("--version"));
+        const int64_t whole_ns = time_of_run(ARGUMENTS("--camera", WALK "@max", "--output", "file:/dev/null"));
+        at_once = whole_ns - begin_ns < INT64_C(1000000) * PATIENCE_MS / 2;
+    }
+    close(null_device);
+    assert_true(at_once);
+}
+
 static void write_file(const char *path, const char *text)
 {
     FILE *file = fopen(path, "w");
@@ -244,6 +271,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(term_ends_within_a_frame, open_host, close_host),
+        cmocka_unit_test_setup_teardown(recordings_end_at_once, open_host, close_host),
         cmocka_unit_test_setup_teardown(broken_settings_leave_the_old_ones, open_host, close_host),
         cmocka_unit_test_setup_teardown(broken_map_leaves_the_old_one, open_host, close_host),
         cmocka_unit_test_setup_teardown(commands_are_answered, open_host, close_host),
