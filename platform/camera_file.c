@@ -188,7 +188,7 @@ static bool set_light(camera *base, int32_t exposure_us, double gain, error_text
     (void)base;
     if (exposure_us == 0 && gain == 0)
         return true;
-    error_text_set(error, "is a recording: its exposure and gain cannot be set");
+    error_text_set(error, "is a recording: its light cannot be set");
     return false;
 }
 

@@ -12,6 +12,8 @@ consumer=$5
 place=$(mktemp -d)
 trap 'rm -rf "$place"' EXIT
 "$cmake" --install "$build" --prefix "$place/installed" >"$place/install.log"
+unit=$(find "$place/installed" -name tapemark-stream.service)
+[ -z "$unit" ] || grep -q "^ExecStart=$place/installed/bin/tapemark-stream " "$unit"
 prefix=$place/moved
 mv "$place/installed" "$prefix"
 

@@ -138,7 +138,7 @@ static void commands_are_answered(void **state)
         {"SET", "roi", "4000x200+10+20", "ERR", "outside of 480x270 pixels"},
         {"SET", "roi", "somewhere", "ERR", "WIDTHxHEIGHT+X+Y in pixels or full"},
         {"GET", "roi", NULL, "OK", "400x200+10+20"},
-        {"SET", "exposure", "500", "ERR", "is a recording: its exposure and gain ca"},
+        {"SET", "exposure", "500", "ERR", "is a recording: its light cannot be set"},
         {"SET", "exposure", "auto", "OK", "auto"},
         {"SET", "exposure", "0", "ERR", "1 to 10000000 or auto"},
         {"SET", "gain", "auto", "OK", "auto"},
