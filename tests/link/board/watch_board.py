@@ -8,6 +8,7 @@ import re
 import select
 import subprocess
 import sys
+import termios
 import time
 import tty
 
@@ -38,7 +39,7 @@ class Board:
     def __init__(self, program, firmware):
         self.process = subprocess.Popen([program, firmware], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self.line = os.open(self.process.stdout.readline().decode().strip(), os.O_RDWR | os.O_NOCTTY)
-        tty.setraw(self.line)
+        tty.setraw(self.line, termios.TCSANOW)  # and keep what the board has said already
         os.set_blocking(self.line, False)
         self.said = b""
 
