@@ -24,9 +24,6 @@ static const float doubtful_blur = 0.36f, doubtful_gain = -1.31f;
  * it, words that add doubtful ones to the right word would crowd that off the list. */
 static const float one_cost = 0.35f;
 
-/* Correlations closer than this do not tell two words apart; then the caller's ids may. */
-static const float known_id_bonus = 0.03f;
-
 /* Blur beyond which even without noise the right word may be missing on the shortlist: of both leaks together, or of
  * one; or as little that was resolved. The odds are then cut down to what is enough only where the next CM says the
  * same id. */
@@ -285,7 +282,9 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     if (reading->id != TMI_NO_ID && (words->known_ids || words->id_max < TAPEMARK_MAX_ID)) {
         tmi_reading known;
         best_two(scores, ids, count, words, false, &known);
-        if (known.id != TMI_NO_ID && known.score > reading->score - known_id_bonus)
+        /* A word that is not the best one is not read, be the best one's id unknown: it may be the tape of another
+         * plan. Of a known one, only others that are known can take the place. */
+        if (known.id == reading->id)
             *reading = known;
         else
             reading->unknown = true;
