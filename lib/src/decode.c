@@ -19,6 +19,10 @@ enum { SCAN_PERCENT = 40, TRY_PERCENT = 68, GROW_PERCENT = 78 };
 /* Comparing a hit with the finders already there costs as much as this many pixel reads. */
 enum { HIT_WORK = 8 };
 
+/* A finder pattern makes out most of the contrast of a tile that holds it: hits of less than this part of what tiles
+ * must have to be scanned are noise. */
+static const float hit_part = 0.5f;
+
 /* A finder pattern found by itself has to correlate this well with the ideal one. */
 static const float lone_score = 0.6f;
 
@@ -60,6 +64,7 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 typedef struct seeker {
     tmi_tape *tape;
     tmi_strokes *strokes;
+    float contrast_min; /* of a hit */
     bool vertical;
 } seeker;
 
@@ -70,6 +75,8 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
     tapemark_stats *stats = tape->stats;
     stats->pattern_hits++;
     stats->work += HIT_WORK;
+    if (hit->contrast < s->contrast_min)
+        return;
     const tmi_point at = s->vertical ? (tmi_point){(float)line, hit->centre} : (tmi_point){hit->centre, (float)line};
     if (tmi_tape_finder_at(tape, at) != TMI_NONE)
         return;
@@ -137,11 +144,23 @@ static int32_t next_spread(int32_t index, int32_t power)
     return index + bit;
 }
 
+/* Whether there is anything to scan in a row, or a column, of tiles. */
+static bool is_active(const tmi_tiles *tiles, bool vertical, int32_t tile)
+{
+    const int32_t words = vertical ? tiles->column_words : tiles->row_words;
+    const uint32_t *bits = (vertical ? tiles->column_bits : tiles->row_bits) + tile * words;
+    uint32_t any = 0;
+    for (int32_t i = 0; i < words; i++)
+        any |= bits[i];
+    return any != 0;
+}
+
 static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)
 {
     const tmi_view *view = s->tape->view;
     const int32_t line = 1 + LINE_SPACING * index;
-    if (line >= (s->vertical ? view->width : view->height))
+    if (line >= (s->vertical ? view->width : view->height) ||
+        !is_active(tiles, s->vertical, line / TAPEMARK_TILE_PX))
         return;
     tmi_scan scan = s->vertical ? column_of(view, tiles, line) : row_of(view, tiles, line);
     scan.strokes = s->strokes;
@@ -153,7 +172,8 @@ static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)
  * been spread evenly. */
 static void scan_lines(tmi_tape *tape, tmi_strokes *strokes, const tmi_tiles *tiles, uint32_t work_max)
 {
-    seeker rows = {tape, strokes, false}, columns = {tape, strokes, true};
+    const float contrast_min = hit_part * (float)tiles->contrast_min;
+    seeker rows = {tape, strokes, contrast_min, false}, columns = {tape, strokes, contrast_min, true};
     const int32_t row_power = power_of_two_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
     const int32_t column_power = power_of_two_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
     int32_t row = 0, column = 0;

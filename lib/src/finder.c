@@ -14,15 +14,10 @@ static const tmi_point ray_direction[RAYS] = {
     {0, -1}, {.382683f, -.923880f},  {.707107f, -.707107f},  {.923880f, -.382683f},
 };
 
-typedef struct ray_walk {
-    const tmi_view *view;
-    tmi_point start, step;
-    float value[RAY_SAMPLES];
-} ray_walk;
-
-/* Index at which the samples from..to pass `level`, between samples. */
-static float level_passed(const float *value, int from, int to, float level)
+/* Index at which the samples from..to pass the middle between those two, between samples. */
+static float middle_passed(const float *value, int from, int to)
 {
+    const float level = 0.5f * (value[from] + value[to]);
     const bool rising = value[to] > value[from];
     int i = from + 1;
     while (i < to && (rising ? value[i] < level : value[i] > level))
@@ -31,23 +26,45 @@ static float level_passed(const float *value, int from, int to, float level)
     return (float)(i - 1) + (change != 0 ? (level - value[i - 1]) / change : 0.5f);
 }
 
-/* Follows one ray over core, light ring and dark ring. Returns the distance to the dark ring's outer edge, in
- * samples, put together from all three edges at 1.5, 2.5 and 3.5 modules; 0 where they are not there or not in
- * proportion. */
-static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
+/* An edge may lie off its place, 1.5, 2.5 or 3.5 modules from the start, by this part of a module and so many
+ * samples. */
+static const float slack_modules = 0.55f, slack_samples = 0.4f;
+
+/* Samples after which the ray must have passed the edge `k` of those, when the first one is here: two more, for an
+ * edge is noticed behind it. */
+static int samples_to_edge(int k, float first_edge)
 {
-    int extreme_at[4], found = 0, at = 0; /* core, light ring, dark ring, light margin */
-    float edge[3];
+    const float module_max = (first_edge + slack_samples) / (1.5f - slack_modules);
+    const float latest = (1.5f + slack_modules + (float)k) * module_max + slack_samples + 2;
+    return latest < RAY_SAMPLES ? (int)latest : RAY_SAMPLES;
+}
+
+/* The first edge, behind blur, lies no further than this many samples behind where it is noticed. */
+static const float blurred_samples = 4;
+
+/* Follows one ray over core, light ring and dark ring. Returns the distance to the dark ring's outer edge, in
+ * samples, put together from all three edges; 0 where they are not there or not in proportion. */
+static float cast_ray(const tmi_view *view, tmi_point start, tmi_point step, float swing, uint32_t *reads)
+{
+    const tmi_point end = {start.x + (RAY_SAMPLES - 1) * step.x, start.y + (RAY_SAMPLES - 1) * step.y};
+    const bool within = tmi_is_within(view, start) && tmi_is_within(view, end);
+    float value[RAY_SAMPLES], edge[3] = {0};
+    int extreme_at[4], found = 0, at = 0, last = RAY_SAMPLES; /* core, light ring, dark ring, light margin */
     int i = 0;
-    for (; i < RAY_SAMPLES && found < 4; i++) {
-        const float v = walk->value[i] =
-            tmi_sample(walk->view, walk->start.x + (float)i * walk->step.x, walk->start.y + (float)i * walk->step.y);
+    for (; i < last && found < 4; i++) {
+        const float x = start.x + (float)i * step.x, y = start.y + (float)i * step.y;
+        const float v = value[i] = tmi_sample_at(view, (tmi_point){x, y}, within);
         const bool seeking_light = found & 1;
-        if (seeking_light ? v >= walk->value[at] : v <= walk->value[at])
+        if (seeking_light ? v >= value[at] : v <= value[at]) {
             at = i;
-        else if (seeking_light ? v < walk->value[at] - swing : v > walk->value[at] + swing) {
+        } else if (seeking_light ? v < value[at] - swing : v > value[at] + swing) {
             extreme_at[found++] = at;
             at = i;
+            if (found == 2)
+                edge[0] = middle_passed(value, extreme_at[0], extreme_at[1]);
+            last = found == 1   ? samples_to_edge(1, (float)i + blurred_samples)
+                   : found == 2 ? samples_to_edge(2, edge[0])
+                                : RAY_SAMPLES;
         }
         /* The margin need not end: three more modules of it are enough. */
         if (found == 3 && 2.33f * (float)(i - extreme_at[2]) > (float)extreme_at[2])
@@ -56,22 +73,14 @@ static float ray_reach(ray_walk *walk, float swing, uint32_t *reads)
     *reads += (uint32_t)i;
     if (found < 4)
         return 0;
-    for (int k = 0; k < 3; k++)
-        edge[k] = level_passed(walk->value, extreme_at[k], extreme_at[k + 1],
-                               0.5f * (walk->value[extreme_at[k]] + walk->value[extreme_at[k + 1]]));
+    edge[1] = middle_passed(value, extreme_at[1], extreme_at[2]);
+    edge[2] = middle_passed(value, extreme_at[2], extreme_at[3]);
     const float module = (1.5f * edge[0] + 2.5f * edge[1] + 3.5f * edge[2]) * (1 / (2.25f + 6.25f + 12.25f));
-    const float slack = 0.55f * module + 0.4f;
+    const float slack = slack_modules * module + slack_samples;
     for (int k = 0; k < 3; k++)
         if (real_abs(edge[k] - (1.5f + (float)k) * module) > slack)
             return 0;
     return 3.5f * module;
-}
-
-static float cast_ray(const tmi_view *view, tmi_point start, tmi_point direction, tmi_point step_px, float swing,
-                      uint32_t *reads)
-{
-    ray_walk walk = {.view = view, .start = start, .step = {direction.x * step_px.x, direction.y * step_px.y}};
-    return ray_reach(&walk, swing, reads);
 }
 
 /* How far the core goes on from `start`, up to where it has become lighter by `swing`; negative where it does not
@@ -79,12 +88,16 @@ static float cast_ray(const tmi_view *view, tmi_point start, tmi_point direction
 static float core_reach(const tmi_view *view, tmi_point start, tmi_point direction, float step_px, float swing,
                         uint32_t *reads)
 {
+    const float end_px = (RAY_SAMPLES - 1) * step_px;
+    const bool within =
+        tmi_is_within(view, start) &&
+        tmi_is_within(view, (tmi_point){start.x + end_px * direction.x, start.y + end_px * direction.y});
     const float core = tmi_sample(view, start.x, start.y) + swing;
     int i = 1;
     float before = core - swing, now = before;
     for (; i < RAY_SAMPLES; i++, before = now) {
-        now =
-            tmi_sample(view, start.x + (float)i * step_px * direction.x, start.y + (float)i * step_px * direction.y);
+        const float go_px = (float)i * step_px;
+        now = tmi_sample_at(view, (tmi_point){start.x + go_px * direction.x, start.y + go_px * direction.y}, within);
         if (now > core)
             break;
     }
@@ -266,24 +279,24 @@ static const float fine_px = 2.5f;
 /* How far outwards from (u, v) the edge lies that should be there, in modules: where the gray value passes the
  * middle of what is `span` modules inside and outside. Blur is symmetric, so that this holds for blurred edges.
  * Where that is more than the blur can be, the place is halved in first. */
-static float edge_offset(const tmi_view *view, const tmi_homography *map, float u, float v, tmi_point normal,
-                         float span, float *contrast, uint32_t *reads)
+static float edge_offset(const tmi_view *view, const tmi_homography *map, bool within, float u, float v,
+                         tmi_point normal, float span, float *contrast, uint32_t *reads)
 {
     const float du = span * normal.x, dv = span * normal.y;
     tmi_point in = tmi_project(map, u - du, v - dv), out = tmi_project(map, u + du, v + dv);
-    float inside = tmi_sample(view, in.x, in.y), outside = tmi_sample(view, out.x, out.y);
+    float inside = tmi_sample_at(view, in, within), outside = tmi_sample_at(view, out, within);
     const float middle = 0.5f * (inside + outside), rise = outside - inside;
     float from = -span, to = span, length = real_max(real_abs(out.x - in.x), real_abs(out.y - in.y));
     *contrast = rise;
     *reads += 3;
     if (length < fine_px) {
         const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
-        const float offset = rise != 0 ? 2 * span * (middle - tmi_sample(view, at.x, at.y)) / rise : 0;
+        const float offset = rise != 0 ? 2 * span * (middle - tmi_sample_at(view, at, within)) / rise : 0;
         return real_max(-span, real_min(span, offset));
     }
     for (; length > 0.5f * fine_px; length *= 0.5f) {
         const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
-        const float value = tmi_sample(view, at.x, at.y);
+        const float value = tmi_sample_at(view, at, within);
         ++*reads;
         if ((value - middle) * rise > 0) {
             out = at;
@@ -302,6 +315,8 @@ bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u
                         tmi_offsets *out, uint32_t *reads)
 {
     static const tmi_point normal[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    const float most = 3.5f + span;
+    const bool within = tmi_rectangle_is_within(view, map, u0 - most, -most, u0 + most, most);
     tmi_normal shift_u = {0}, shift_v = {0};
     for (int ring = 0; ring < 3; ring++) {
         const float r = 1.5f + (float)ring, sign = ring == 1 ? -1.0f : 1.0f;
@@ -310,7 +325,7 @@ bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u
                 const tmi_point n = normal[side];
                 const float u = n.x != 0 ? n.x * r : (float)along, v = n.x != 0 ? (float)along : n.y * r;
                 float contrast;
-                const float offset = edge_offset(view, map, u0 + u, v, n, span, &contrast, reads);
+                const float offset = edge_offset(view, map, within, u0 + u, v, n, span, &contrast, reads);
                 contrast *= sign; /* what lies outside of the light ring is darker */
                 if (contrast <= contrast_min)
                     continue;
@@ -428,7 +443,7 @@ bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, f
     float reach[RAYS];
     int missing = 0;
     for (int i = 0; i < RAYS && missing <= MISSING_MAX; i++) {
-        reach[i] = cast_ray(view, start, ray_direction[i], step, 0.2f * contrast, reads);
+        reach[i] = cast_ray(view, start, (tmi_point){ray_direction[i].x * step.x, ray_direction[i].y * step.y}, 0.2f * contrast, reads);
         missing += reach[i] == 0;
     }
     outline out;

@@ -17,4 +17,19 @@ static inline tmi_point tmi_project(const tmi_homography *map, float u, float v)
     return (tmi_point){(h[0] * u + h[1] * v + h[2]) * w, (h[3] * u + h[4] * v + h[5]) * w};
 }
 
+/* Whether the image holds the rectangle between (u0, v0) and (u1, v1) with a pixel to spare, which is more than
+ * rounding takes. No corner must lie behind the camera: then all between them lies between their images. */
+static inline bool tmi_rectangle_is_within(const tmi_view *view, const tmi_homography *map, float u0, float v0,
+                                           float u1, float v1)
+{
+    const tmi_point corners[4] = {{u0, v0}, {u1, v0}, {u1, v1}, {u0, v1}};
+    for (int i = 0; i < 4; i++) {
+        const tmi_point at = tmi_project(map, corners[i].x, corners[i].y);
+        if (!(map->h[6] * corners[i].x + map->h[7] * corners[i].y > -1 && at.x > 1 && at.y > 1 &&
+              at.x < (float)(view->width - 2) && at.y < (float)(view->height - 2)))
+            return false;
+    }
+    return true;
+}
+
 #endif

@@ -177,17 +177,6 @@ typedef struct raster {
     bool inside;
 } raster;
 
-static bool is_inside(const tmi_view *view, const tmi_homography *map)
-{
-    static const tmi_point corners[4] = {{-4, -4}, {PITCH + 4, -4}, {PITCH + 4, 4}, {-4, 4}};
-    for (int i = 0; i < 4; i++) {
-        const tmi_point at = tmi_project(map, corners[i].x, corners[i].y);
-        if (!(at.x > 1 && at.y > 1 && at.x < (float)(view->width - 2) && at.y < (float)(view->height - 2)))
-            return false;
-    }
-    return true;
-}
-
 /* Square of a module's narrower side, px, in the middle between the finders. */
 static float narrow_side_squared(const tmi_homography *map)
 {
@@ -199,7 +188,7 @@ static float narrow_side_squared(const tmi_homography *map)
 
 static raster raster_for(const tmi_view *view, const tmi_homography *map)
 {
-    return (raster){narrow_side_squared(map) < 16 ? 0.4f : 0.45f, is_inside(view, map)};
+    return (raster){narrow_side_squared(map) < 16 ? 0.4f : 0.45f, tmi_rectangle_is_within(view, map, -4, -4, PITCH + 4, 4)};
 }
 
 /* Modules that words need to be told from each other, px. */

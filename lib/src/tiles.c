@@ -51,15 +51,14 @@ static void column_extremes_cut(const uint8_t *restrict p, ptrdiff_t stride, int
         }
 }
 
-/* Folds the columns of each tile onto its first one. What the folding of a tile's last columns reads of the next
- * tile ends up beside the first column, and counts for nothing. */
-static void fold_tiles(uint8_t *restrict low, uint8_t *restrict high, int32_t width)
+/* Joins columns two by two; in loops of their own, in which sixteen at a time are. */
+static void join_pairs(const uint8_t *restrict low, const uint8_t *restrict high, int32_t pairs,
+                       uint8_t *restrict joined_low, uint8_t *restrict joined_high)
 {
-    for (int32_t half = TILE / 2; half > 0; half /= 2)
-        for (int32_t x = 0; x < width; x++) {
-            low[x] = lesser(low[x], low[x + half]);
-            high[x] = greater(high[x], high[x + half]);
-        }
+    for (int32_t i = 0; i < pairs; i++)
+        joined_low[i] = lesser(low[2 * i], low[2 * i + 1]);
+    for (int32_t i = 0; i < pairs; i++)
+        joined_high[i] = greater(high[2 * i], high[2 * i + 1]);
 }
 
 static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low, uint8_t *high)
@@ -67,7 +66,7 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
     const uint8_t *pixels = view->pixels + (ptrdiff_t)tile_y * TILE * view->stride;
     const int32_t rows = view->height - tile_y * TILE;
     for (int32_t x0 = 0; x0 < view->width; x0 += STRIP) {
-        uint8_t strip_low[STRIP + TILE], strip_high[STRIP + TILE];
+        uint8_t strip_low[STRIP + TILE], strip_high[STRIP + TILE], half_low[STRIP / 2], half_high[STRIP / 2];
         const int32_t width = view->width - x0 < STRIP ? view->width - x0 : STRIP;
         if (rows >= TILE)
             column_extremes(pixels + x0, view->stride, width, strip_low, strip_high);
@@ -75,11 +74,12 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
             column_extremes_cut(pixels + x0, view->stride, rows, width, strip_low, strip_high);
         memset(strip_low + width, 255, TILE);
         memset(strip_high + width, 0, TILE);
-        fold_tiles(strip_low, strip_high, width);
-        for (int32_t x = 0; x < width; x += TILE) {
-            low[(x0 + x) / TILE] = strip_low[x];
-            high[(x0 + x) / TILE] = strip_high[x];
-        }
+        const int32_t tiles = tiles_across(width);
+        _Static_assert(TILE == 16, "sixteen columns become one in four steps");
+        join_pairs(strip_low, strip_high, 8 * tiles, half_low, half_high);
+        join_pairs(half_low, half_high, 4 * tiles, strip_low, strip_high);
+        join_pairs(strip_low, strip_high, 2 * tiles, half_low, half_high);
+        join_pairs(half_low, half_high, tiles, low + x0 / TILE, high + x0 / TILE);
     }
 }
 
@@ -89,7 +89,7 @@ enum { BAR_PERCENT = 8 };
 
 /* The contrast from which tiles are scanned: contrast_min at least, and what leaves about
  * `active_max` of them. */
-static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max, bool *raised)
+static uint8_t contrast_bar(tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max, bool *raised)
 {
     uint32_t histogram[256] = {0};
     for (int32_t y = 0; y < tiles->rows; y++)
@@ -101,6 +101,7 @@ static uint8_t contrast_bar(const tmi_tiles *tiles, uint8_t contrast_min, uint32
     while (most > 0 && !histogram[most])
         most--;
     const int least = most * BAR_PERCENT / 100 > contrast_min ? most * BAR_PERCENT / 100 : contrast_min;
+    tiles->contrast_min = (uint8_t)least;
     uint32_t above = 0;
     int bar = 256;
     while (bar > least) {

@@ -17,7 +17,8 @@ typedef struct tmi_tiles {
     int32_t columns, rows;
     ptrdiff_t pitch; /* from one row of tiles to the next */
     int32_t row_words, column_words;
-    uint32_t active; /* tiles with a swing */
+    uint32_t active;      /* tiles with a swing */
+    uint8_t contrast_min; /* the least that a tile must have for one, whether or not that bar was raised */
 } tmi_tiles;
 
 /* Lays everything out in `memory`, which is aligned for uint32_t and as large as TAPEMARK_WORKSPACE_BYTES has it

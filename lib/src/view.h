@@ -2,6 +2,7 @@
 #ifndef TAPEMARK_VIEW_H
 #define TAPEMARK_VIEW_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -41,20 +42,41 @@ static inline int32_t tmi_interpolate(const tmi_view *view, uint32_t x_steps, ui
 static inline float tmi_gray(const tmi_view *view, int32_t sum, int count)
 {
     const float scale = 1 / ((float)(TMI_STEPS_PER_PX * TMI_STEPS_PER_PX) * (float)count);
-    return view->sign * (float)sum * scale + view->offset;
+    return (float)sum * (view->sign * scale) + view->offset;
+}
+
+/* The last place along a side of so many pixels that has a next pixel to interpolate with. */
+static inline float tmi_last_place(int32_t pixels)
+{
+    return (float)(pixels - 2) + (1 - 1.0f / TMI_STEPS_PER_PX);
+}
+
+/* Whether a place lies so that nothing has to go on beyond the image's border; false for a NaN. */
+static inline bool tmi_is_within(const tmi_view *view, tmi_point at)
+{
+    return at.x >= 0 && at.y >= 0 && at.x <= tmi_last_place(view->width) && at.y <= tmi_last_place(view->height);
+}
+
+/* Bilinear interpolation at a place within the image. */
+static inline float tmi_sample_within(const tmi_view *view, float x, float y)
+{
+    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(TMI_STEPS_PER_PX * x),
+                                          (uint32_t)(int32_t)(TMI_STEPS_PER_PX * y)), 1);
 }
 
 /* Bilinear interpolation anywhere; outside of the image the border pixels go on. */
 static inline float tmi_sample(const tmi_view *view, float x, float y)
 {
-    const float last = 1 - 1.0f / TMI_STEPS_PER_PX; /* of the way from the last pixel but one to the last */
-    const float right = (float)(view->width - 2) + last, bottom = (float)(view->height - 2) + last;
-    x = x > 0 ? x : 0; /* a NaN ends up as 0 */
-    y = y > 0 ? y : 0;
-    x = x < right ? x : right;
+    const float right = tmi_last_place(view->width), bottom = tmi_last_place(view->height);
+    x = x < right ? x : right; /* a NaN, too, ends up within */
     y = y < bottom ? y : bottom;
-    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(TMI_STEPS_PER_PX * x),
-                                          (uint32_t)(int32_t)(TMI_STEPS_PER_PX * y)), 1);
+    return tmi_sample_within(view, x > 0 ? x : 0, y > 0 ? y : 0);
+}
+
+/* The one or the other. */
+static inline float tmi_sample_at(const tmi_view *view, tmi_point at, bool within)
+{
+    return within ? tmi_sample_within(view, at.x, at.y) : tmi_sample(view, at.x, at.y);
 }
 
 #endif

@@ -120,6 +120,28 @@ static void finds_nothing_in_noise(void **state)
     }
 }
 
+/* Noise alone is looked at, for it may be all the contrast that there is; beside a print it is what it is. */
+static void noise_beside_something_of_contrast_is_left_alone(void **state)
+{
+    (void)state;
+    enum { SIDE = 400 };
+    static uint8_t pixels[SIDE * SIDE];
+    uint32_t tried[2];
+    for (int with_square = 0; with_square < 2; with_square++) {
+        random_source source = {7};
+        for (size_t i = 0; i < sizeof pixels; i++)
+            pixels[i] = (uint8_t)(105.5f + 3.6f * random_normal(&source));
+        for (int y = 0; with_square && y < 40; y++)
+            memset(pixels + y * SIDE, y < 20 ? 0 : 255, 40);
+        const decoding *got = decode_pixels(pixels, SIDE, SIDE, NULL);
+        assert_no_marker(got);
+        assert_in_range(got->result.stats.pattern_hits, 50, 100000);
+        tried[with_square] = got->result.stats.finders_tried;
+    }
+    if (!(tried[0] > 20 && 4 * tried[1] < tried[0]))
+        fail_msg("%u places were tried in noise, %u with a square beside it", (unsigned)tried[0], (unsigned)tried[1]);
+}
+
 static void finds_nothing_in_checkerboards(void **state)
 {
     (void)state;
@@ -171,6 +193,7 @@ int main(void)
         cmocka_unit_test(a_small_budget_bounds_the_work_on_clutter),
         cmocka_unit_test(a_sheet_of_tapes_stays_within_bounds),
         cmocka_unit_test(finds_nothing_in_noise),
+        cmocka_unit_test(noise_beside_something_of_contrast_is_left_alone),
         cmocka_unit_test(finds_nothing_in_checkerboards),
         cmocka_unit_test(finds_nothing_in_odd_sizes),
         cmocka_unit_test(says_that_nothing_was_found_where_there_is_nothing),

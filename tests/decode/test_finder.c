@@ -294,6 +294,28 @@ static void what_is_no_pattern_is_not_believed(void **state)
     }
 }
 
+/* A core and its light ring, in a dark plane. */
+static int well(int x, int y)
+{
+    const int ring = abs(x) > abs(y) ? abs(x) : abs(y);
+    return ring < 6 || ring >= 10;
+}
+
+/* A ray goes no further than the next ring can be: not over the whole plane around a square, light or dark. */
+static void rays_that_meet_no_ring_cost_little(void **state)
+{
+    (void)state;
+    static int (*const pictures[])(int, int) = {lone_square, well};
+    for (size_t i = 0; i < COUNT_OF(pictures); i++) {
+        draw(pictures[i]);
+        tmi_finder f;
+        uint32_t reads = 0;
+        assert_false(tmi_finder_locate(&seen.view, (tmi_point){SIDE / 2, SIDE / 2}, 4, 150, &f, &reads));
+        if (reads > 330)
+            fail_msg("picture %u: %u pixels were read", (unsigned)i, (unsigned)reads);
+    }
+}
+
 static void patterns_at_the_border_break_nothing(void **state)
 {
     (void)state;
@@ -319,6 +341,7 @@ int main(void)
         cmocka_unit_test(refining_pulls_back_what_is_off),
         cmocka_unit_test(scores_tell_right_from_wrong_places),
         cmocka_unit_test(what_is_no_pattern_is_not_believed),
+        cmocka_unit_test(rays_that_meet_no_ring_cost_little),
         cmocka_unit_test(patterns_at_the_border_break_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
