@@ -149,10 +149,10 @@ static bool is_active(const tmi_tiles *tiles, bool vertical, int32_t tile)
 {
     const int32_t words = vertical ? tiles->column_words : tiles->row_words;
     const uint32_t *bits = (vertical ? tiles->column_bits : tiles->row_bits) + tile * words;
-    uint32_t any = 0;
     for (int32_t i = 0; i < words; i++)
-        any |= bits[i];
-    return any != 0;
+        if (bits[i])
+            return true;
+    return false;
 }
 
 static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)

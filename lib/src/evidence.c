@@ -58,6 +58,14 @@ TMI_ONCE void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], 
     blur(cells, modules, out);
 }
 
+/* The word of no ones, or of no zeros, as seen; and how its scale is told: what most of its data cells are, and how
+ * far from them the alignment cells lie that differ from them. */
+typedef struct blank_word {
+    bool dark;
+    float cells[CELLS];
+    float data, step;
+} blank_word;
+
 static void draw_blank(const tmi_cells *cells, bool dark, float out[CELLS])
 {
     uint16_t rows[ROWS];
@@ -144,29 +152,36 @@ static float usual_data(const float *cells)
 }
 
 /* Mean of the alignment cells that differ from most data cells: dark ones in light words, else light ones. */
-static float mean_alignment(const float *cells, const uint16_t rows[ROWS])
+static float mean_alignment(const float *cells, bool dark)
 {
+    const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
     float sum = 0, count = 0;
-    for (int i = 0; i < CELLS; i++)
-        if (rows[i / COLUMNS] >> (COLUMNS - 1 - i % COLUMNS) & 1) {
-            sum += cells[i];
-            count++;
+    for (int row = 0; row < ROWS; row++)
+        for (unsigned left = rows[row]; left; count++) {
+            const int column = __builtin_clz(left) - 16;
+            sum += cells[row * COLUMNS + column];
+            left &= ~(0x8000u >> column);
         }
     return sum / count;
+}
+
+TMI_ONCE static void set_blank(blank_word *blank, const tmi_cells *cells, bool dark)
+{
+    blank->dark = dark;
+    draw_blank(cells, dark, blank->cells);
+    blank->data = usual_data(blank->cells);
+    blank->step = mean_alignment(blank->cells, dark) - blank->data;
 }
 
 /* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
  * differ by what blur does beyond the nearest module. The cells that all words share set it right: first by what
  * most data cells and the alignment cells are, then by all cells that are then as the blank word has them. */
-static void level_cells(const float *blank, bool dark, float seen[CELLS])
+static void level_cells(const blank_word *blank, float seen[CELLS])
 {
-    const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
-    const float seen_data = usual_data(seen), blank_data = usual_data(blank);
-    const float seen_step = mean_alignment(seen, rows) - seen_data;
-    const float blank_step = mean_alignment(blank, rows) - blank_data;
-    float gain = seen_step * blank_step > 0 ? real_max(0.7f, real_min(2, blank_step / seen_step)) : 1;
-    float offset = blank_data - gain * seen_data;
-    fit_line(seen, blank, 0.25f, &gain, &offset);
+    const float data = usual_data(seen), step = mean_alignment(seen, blank->dark) - data;
+    float gain = step * blank->step > 0 ? real_max(0.7f, real_min(2, blank->step / step)) : 1;
+    float offset = blank->data - gain * data;
+    fit_line(seen, blank->cells, 0.25f, &gain, &offset);
     for (int i = 0; i < CELLS; i++)
         seen[i] = gain * seen[i] + offset;
 }
@@ -289,13 +304,27 @@ float tmi_evidence_gain(const tmi_evidence *e, int bit)
     return 2 * e->sign * (b->on_seen - b->on_blank) - tmi_evidence_energy(e, bit);
 }
 
+TMI_ONCE static float score_blank(const blank_word *blank, tmi_cells *cells)
+{
+    level_cells(blank, cells->value);
+    tmi_evidence sums = {0};
+    sum_up(&sums, cells, blank->cells);
+    return tmi_evidence_correlate(&sums, NULL, 0);
+}
+
 float tmi_blank_score(tmi_cells *cells)
 {
-    float blank[CELLS];
-    const bool dark = mostly_dark(cells);
-    draw_blank(cells, dark, blank);
-    level_cells(blank, dark, cells->value);
-    tmi_evidence sums = {0};
-    sum_up(&sums, cells, blank);
-    return tmi_evidence_correlate(&sums, NULL, 0);
+    blank_word blank;
+    set_blank(&blank, cells, mostly_dark(cells));
+    return score_blank(&blank, cells);
+}
+
+void tmi_blank_scores(tmi_cells *cells, tmi_cells *turned, float scores[2])
+{
+    blank_word blank;
+    set_blank(&blank, cells, mostly_dark(cells));
+    scores[0] = score_blank(&blank, cells);
+    if (mostly_dark(turned) != blank.dark)
+        set_blank(&blank, turned, !blank.dark);
+    scores[1] = score_blank(&blank, turned);
 }

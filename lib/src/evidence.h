@@ -25,6 +25,9 @@ void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[TAPEMARK_CELL_RO
  * scale of the cells to it. */
 float tmi_blank_score(tmi_cells *cells);
 
+/* The same both ways up, which are mostly compared with the same. */
+void tmi_blank_scores(tmi_cells *cells, tmi_cells *turned, float scores[2]);
+
 /* The cells that a word decides are numbered as bits: its 78 of data in printed order, then its 8 of checksum. A bit
  * is set where the word differs from the blank one, that is, from no ones (or, where most cells are dark, no zeros)
  * with a checksum of all 0 (or all 1). */

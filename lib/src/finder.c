@@ -443,7 +443,8 @@ bool tmi_finder_locate(const tmi_view *view, tmi_point start, float module_px, f
     float reach[RAYS];
     int missing = 0;
     for (int i = 0; i < RAYS && missing <= MISSING_MAX; i++) {
-        reach[i] = cast_ray(view, start, (tmi_point){ray_direction[i].x * step.x, ray_direction[i].y * step.y}, 0.2f * contrast, reads);
+        const tmi_point along = {ray_direction[i].x * step.x, ray_direction[i].y * step.y};
+        reach[i] = cast_ray(view, start, along, 0.2f * contrast, reads);
         missing += reach[i] == 0;
     }
     outline out;

@@ -188,7 +188,8 @@ static float narrow_side_squared(const tmi_homography *map)
 
 static raster raster_for(const tmi_view *view, const tmi_homography *map)
 {
-    return (raster){narrow_side_squared(map) < 16 ? 0.4f : 0.45f, tmi_rectangle_is_within(view, map, -4, -4, PITCH + 4, 4)};
+    return (raster){narrow_side_squared(map) < 16 ? 0.4f : 0.45f,
+                    tmi_rectangle_is_within(view, map, -4, -4, PITCH + 4, 4)};
 }
 
 /* Modules that words need to be told from each other, px. */

@@ -13,7 +13,9 @@ static float fit(const tmi_cells *cells)
 {
     tmi_cells upright = *cells, turned = *cells;
     tmi_cells_turn(&turned);
-    return real_max(tmi_blank_score(&upright), tmi_blank_score(&turned));
+    float scores[2];
+    tmi_blank_scores(&upright, &turned, scores);
+    return real_max(scores[0], scores[1]);
 }
 
 static void mirror(tmi_cells *cells)

@@ -42,7 +42,8 @@ void tmi_segment_read_cm(const tmi_reader *reader, tmi_segment *segment, int cm)
         reader->kept[cm] = cells;
     tmi_cells turned = cells;
     tmi_cells_turn(&turned);
-    const float blank[2] = {tmi_blank_score(&cells), tmi_blank_score(&turned)};
+    float blank[2];
+    tmi_blank_scores(&cells, &turned, blank);
     stats->work += TMI_BLANK_WORK;
     const float better = real_max(blank[TMI_UPRIGHT], blank[TMI_TURNED]);
     for (int way = TMI_UPRIGHT; way <= TMI_TURNED; way++) {

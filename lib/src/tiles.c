@@ -1,5 +1,7 @@
 #include "tiles.h"
 
+#include "real.h"
+
 #include <string.h>
 
 enum { TILE = TAPEMARK_TILE_PX };
@@ -23,42 +25,43 @@ static inline uint8_t greater(uint8_t a, uint8_t b)
     return a > b ? a : b;
 }
 
-/* Darkest and lightest pixel of each column over one row of tiles. The eight rows are spelled out so that each
- * vector of columns is loaded once and stored once. */
-static void column_extremes(const uint8_t *restrict p, ptrdiff_t stride, int32_t width, uint8_t *restrict low,
-                            uint8_t *restrict high)
+/* Darkest pixel of each column over one row of tiles, and what the lightest one lacks to white, so that the least of
+ * either counts. The eight rows are spelled out so that each vector of columns is loaded once and stored once; where
+ * the image cuts the tiles off, the last row that there is stands for those that are missing. */
+static void column_extremes(const uint8_t *restrict p, ptrdiff_t stride, int32_t rows, int32_t width,
+                            uint8_t *restrict low, uint8_t *restrict lack)
 {
     _Static_assert(ROWS_READ == 8, "eight rows are spelled out below");
-    const ptrdiff_t s = ROW_STEP * stride;
+    ptrdiff_t at[ROWS_READ];
+    for (int32_t i = 0; i < ROWS_READ; i++)
+        at[i] = ROW_STEP * stride * (ROW_STEP * i < rows ? i : (rows - 1) / ROW_STEP);
+    const uint8_t *p0 = p, *p1 = p + at[1], *p2 = p + at[2], *p3 = p + at[3];
+    const uint8_t *p4 = p + at[4], *p5 = p + at[5], *p6 = p + at[6], *p7 = p + at[7];
     for (int32_t x = 0; x < width; x++) {
-        const uint8_t a = p[x], b = p[x + s], c = p[x + 2 * s], d = p[x + 3 * s];
-        const uint8_t e = p[x + 4 * s], f = p[x + 5 * s], g = p[x + 6 * s], h = p[x + 7 * s];
+        const uint8_t a = p0[x], b = p1[x], c = p2[x], d = p3[x], e = p4[x], f = p5[x], g = p6[x], h = p7[x];
         low[x] = lesser(lesser(lesser(a, b), lesser(c, d)), lesser(lesser(e, f), lesser(g, h)));
-        high[x] = greater(greater(greater(a, b), greater(c, d)), greater(greater(e, f), greater(g, h)));
+        lack[x] = (uint8_t)~greater(greater(greater(a, b), greater(c, d)), greater(greater(e, f), greater(g, h)));
     }
 }
 
-/* The same for a last row of tiles that the image cuts off. */
-static void column_extremes_cut(const uint8_t *restrict p, ptrdiff_t stride, int32_t rows, int32_t width,
-                                uint8_t *restrict low, uint8_t *restrict high)
+/* Joins columns two by two. */
+TMI_ONCE static void join_pairs(const uint8_t *restrict columns, int32_t pairs, uint8_t *restrict joined)
 {
-    memcpy(low, p, (size_t)width);
-    memcpy(high, p, (size_t)width);
-    for (int32_t y = ROW_STEP; y < rows; y += ROW_STEP)
-        for (int32_t x = 0; x < width; x++) {
-            low[x] = lesser(low[x], p[y * stride + x]);
-            high[x] = greater(high[x], p[y * stride + x]);
-        }
+    for (int32_t i = 0; i < pairs; i++)
+        joined[i] = lesser(columns[2 * i], columns[2 * i + 1]);
 }
 
-/* Joins columns two by two; in loops of their own, in which sixteen at a time are. */
-static void join_pairs(const uint8_t *restrict low, const uint8_t *restrict high, int32_t pairs,
-                       uint8_t *restrict joined_low, uint8_t *restrict joined_high)
+/* Joins the columns of each tile, the last of which may be cut off. */
+static void join_tiles(uint8_t columns[STRIP + TILE], int32_t width, uint8_t *joined)
 {
-    for (int32_t i = 0; i < pairs; i++)
-        joined_low[i] = lesser(low[2 * i], low[2 * i + 1]);
-    for (int32_t i = 0; i < pairs; i++)
-        joined_high[i] = greater(high[2 * i], high[2 * i + 1]);
+    _Static_assert(TILE == 16, "sixteen columns become one in four steps");
+    uint8_t half[STRIP / 2];
+    const int32_t tiles = tiles_across(width);
+    memset(columns + width, 255, TILE);
+    join_pairs(columns, 8 * tiles, half);
+    join_pairs(half, 4 * tiles, columns);
+    join_pairs(columns, 2 * tiles, half);
+    join_pairs(half, tiles, joined);
 }
 
 static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low, uint8_t *high)
@@ -66,21 +69,14 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
     const uint8_t *pixels = view->pixels + (ptrdiff_t)tile_y * TILE * view->stride;
     const int32_t rows = view->height - tile_y * TILE;
     for (int32_t x0 = 0; x0 < view->width; x0 += STRIP) {
-        uint8_t strip_low[STRIP + TILE], strip_high[STRIP + TILE], half_low[STRIP / 2], half_high[STRIP / 2];
+        uint8_t strip_low[STRIP + TILE], strip_lack[STRIP + TILE];
         const int32_t width = view->width - x0 < STRIP ? view->width - x0 : STRIP;
-        if (rows >= TILE)
-            column_extremes(pixels + x0, view->stride, width, strip_low, strip_high);
-        else
-            column_extremes_cut(pixels + x0, view->stride, rows, width, strip_low, strip_high);
-        memset(strip_low + width, 255, TILE);
-        memset(strip_high + width, 0, TILE);
-        const int32_t tiles = tiles_across(width);
-        _Static_assert(TILE == 16, "sixteen columns become one in four steps");
-        join_pairs(strip_low, strip_high, 8 * tiles, half_low, half_high);
-        join_pairs(half_low, half_high, 4 * tiles, strip_low, strip_high);
-        join_pairs(strip_low, strip_high, 2 * tiles, half_low, half_high);
-        join_pairs(half_low, half_high, tiles, low + x0 / TILE, high + x0 / TILE);
+        column_extremes(pixels + x0, view->stride, rows, width, strip_low, strip_lack);
+        join_tiles(strip_low, width, low + x0 / TILE);
+        join_tiles(strip_lack, width, high + x0 / TILE);
     }
+    for (int32_t x = 0; x < tiles_across(view->width); x++)
+        high[x] = (uint8_t)~high[x];
 }
 
 /* A tile has to have this part, in percent, of the contrast of the one with most: sensor noise grows with the light
