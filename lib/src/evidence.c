@@ -51,10 +51,10 @@ TMI_ONCE static void blur(const tmi_cells *leaks, const float in[CELLS], float o
 
 TMI_ONCE void tmi_cells_draw(const tmi_cells *cells, const uint16_t rows[ROWS], float out[CELLS])
 {
-    float modules[CELLS];
+    float modules[CELLS] = {0};
     for (int row = 0; row < ROWS; row++)
-        for (int column = 0; column < COLUMNS; column++)
-            modules[row * COLUMNS + column] = (float)(rows[row] >> (COLUMNS - 1 - column) & 1);
+        for (unsigned left = rows[row]; left; left &= left - 1)
+            modules[(row + 1) * COLUMNS - 1 - __builtin_ctz(left)] = 1;
     blur(cells, modules, out);
 }
 
@@ -133,7 +133,7 @@ static void fit_line(const float *seen, const float *blank, float reach, float *
 }
 
 /* What most data cells are: their mean, then again without those far from it, which are ones or zeros. */
-static float usual_data(const float *cells)
+TMI_ONCE static float usual_data(const float *cells)
 {
     float usual = 0.5f, reach = 10;
     for (int pass = 0; pass < 3; pass++, reach = 0.25f) {
@@ -152,7 +152,7 @@ static float usual_data(const float *cells)
 }
 
 /* Mean of the alignment cells that differ from most data cells: dark ones in light words, else light ones. */
-static float mean_alignment(const float *cells, bool dark)
+TMI_ONCE static float mean_alignment(const float *cells, bool dark)
 {
     const uint16_t *rows = dark ? tmi_light_rows : tmi_dark_rows;
     float sum = 0, count = 0;
@@ -176,7 +176,7 @@ TMI_ONCE static void set_blank(blank_word *blank, const tmi_cells *cells, bool d
 /* The light around the cells and that in the narrow rings of the finder patterns, from which their scale comes,
  * differ by what blur does beyond the nearest module. The cells that all words share set it right: first by what
  * most data cells and the alignment cells are, then by all cells that are then as the blank word has them. */
-static void level_cells(const blank_word *blank, float seen[CELLS])
+TMI_ONCE static void level_cells(const blank_word *blank, float seen[CELLS])
 {
     const float data = usual_data(seen), step = mean_alignment(seen, blank->dark) - data;
     float gain = step * blank->step > 0 ? real_max(0.7f, real_min(2, blank->step / step)) : 1;
