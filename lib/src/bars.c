@@ -25,16 +25,19 @@ static bool is_unresolved(tmi_bars_place place)
 }
 
 /* Bars too fine to be resolved: half as dark as dark modules, then light. Coding regions are either much darker or
- * much lighter than that. */
+ * much lighter than that, and what is left of one beside something that covers the rest is darker at one end. */
+static const float uneven_max = 0.27f;
+
 static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
 {
     float bars = 0;
     for (int i = 1; i < 8; i++)
         bars += value[i] * (1.0f / 7);
+    const float uneven = (value[1] + value[2] + value[3] - value[5] - value[6] - value[7]) * (1.0f / 3);
     const float scale = 1 / real_max(1, finder->light - finder->dark);
     const float gray = (finder->light - bars) * scale;
     const float quiet = (finder->light - 0.5f * (value[BAR_SAMPLES - 2] + value[BAR_SAMPLES - 1])) * scale;
-    return quiet < 0.4f ? 1 - 3 * real_abs(gray - 0.55f) : 0;
+    return quiet < 0.4f && real_abs(uneven) * scale < uneven_max ? 1 - 3 * real_abs(gray - 0.55f) : 0;
 }
 
 static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)

@@ -83,6 +83,13 @@ static void read_lines(const tmi_reader *reader, const tmi_far *far, const tmi_r
     tmi_vote(codes, clear, lines, out);
 }
 
+/* How much darker than its top row the bottom row of CM k is, as the row runs. */
+static float foot_of(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k)
+{
+    const float u = (float)(PITCH * (row->first + k)) + 6;
+    return dark_along(reader, far, row, u, 14, 3) - dark_along(reader, far, row, u, 14, -3);
+}
+
 /* Light CMs have a dark bottom row, and a dark column at their left: positive where that is so as the row runs,
  * negative where it is so seen from the other side. The mean over all light CMs, in shares of dark. */
 static float turn_of(const tmi_reader *reader, const tmi_far *far, const tmi_row *row)
@@ -93,12 +100,46 @@ static float turn_of(const tmi_reader *reader, const tmi_far *far, const tmi_row
         const float u = (float)(PITCH * (row->first + k));
         if (row->dark >> k & 1)
             continue;
-        sum += dark_along(reader, far, row, u + 6, 14, 3) - dark_along(reader, far, row, u + 6, 14, -3);
+        sum += foot_of(reader, far, row, k);
         for (int v = -2; v <= 2; v++)
             sum += 0.2f * (dark_at(reader, far, row, u + 5, (float)v) - dark_at(reader, far, row, u + 20, (float)v));
         count++;
     }
     return count > 0 ? sum / (float)count : 0;
+}
+
+/* Blocks of CMs, however blurred, fit their print by this much, but for one in a few hundred; dark ones are this dark
+ * in the middle, and no darker beside the tape than the finders next to them are; and light ones are darker at their
+ * bottom by this. Something that lies on them mostly is at odds with one of these. */
+static const float block_misfit_max = 0.085f, ink_min = 0.88f, beside_max = 0.2f, foot_min = 0.15f;
+
+/* How much darker it is beside CM k, v modules from the row's middle, than beside its finders. */
+static float dark_beside(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k, float v)
+{
+    const float u = (float)(PITCH * (row->first + k));
+    return dark_along(reader, far, row, u + 6, 14, v) -
+           0.5f * (dark_along(reader, far, row, u - 3, 7, v) + dark_along(reader, far, row, u + 22, 7, v));
+}
+
+/* Whether something lies on CM k: on a light one, so that it looks dark, or the other way round. */
+static bool is_hidden(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k, float turn)
+{
+    const float beside = 0.5f * TAPEMARK_HEIGHT_MODULES + 1;
+    if (tmi_wave_block_misfit(&far->wave, row, k) > block_misfit_max)
+        return true;
+    if (!(row->dark >> k & 1))
+        return foot_of(reader, far, row, k) * (turn < 0 ? -1.0f : 1.0f) < foot_min;
+    return dark_along(reader, far, row, (float)(PITCH * (row->first + k)) + 6, 14, 0) < ink_min ||
+           dark_beside(reader, far, row, k, beside) > beside_max ||
+           dark_beside(reader, far, row, k, -beside) > beside_max;
+}
+
+static bool any_hidden(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, float turn)
+{
+    for (int k = 0; k < row->cm_count; k++)
+        if (is_hidden(reader, far, row, k, turn))
+            return true;
+    return false;
 }
 
 /* The row's finders and maps as the segment's. */
@@ -146,7 +187,11 @@ static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
     if (least_px < blocks_px || !is_tape(reader, far, row, least_px))
         return;
     const float turn = turn_of(reader, far, row);
-    const bool is_tm = may_be_tm(row, turn);
+    bool is_tm = may_be_tm(row, turn);
+    if (is_tm && any_hidden(reader, far, row, turn)) {
+        reader->result->stats.rejects[TAPEMARK_REJECT_CONFLICT]++;
+        is_tm = false;
+    }
     tmi_tm_reading tm;
     if (is_tm)
         read_lines(reader, far, row, &tm);

@@ -66,20 +66,58 @@ float tmi_turn_hint(const tmi_reader *reader, const tmi_segment *segment, int fi
     return real_abs(along) > 0.2f ? along : 0;
 }
 
-/* Whether the blocks of the TM are as light or dark as the CMs that were read; and where some were, whether the
- * others look like CMs at all, or like something that covers them. */
+/* What shows in the place of a CM fits its best word this well, in parts of how well believed ones fit theirs, and no
+ * more cells than this, beyond those of believed ones, show the opposite of it: something that lies there, dark or
+ * light, has a shade, but no word's cells. */
+static const float uncovered_part = 0.9f;
+static const float contrary_max = 2;
+
+/* How the CMs that are believed fit their words, on average. */
+typedef struct believed_fit {
+    int count;
+    float score, contrary;
+} believed_fit;
+
+static believed_fit fit_of_believed(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count,
+                                    bool turned)
+{
+    believed_fit fit = {0};
+    for (int cm = first; cm < first + count; cm++)
+        if (reasons[cm] == TMI_BELIEVED) {
+            fit.score += segment->readings[turned][cm].score;
+            fit.contrary += segment->readings[turned][cm].contrary;
+            fit.count++;
+        }
+    fit.score /= real_max(1, (float)fit.count);
+    fit.contrary /= real_max(1, (float)fit.count);
+    return fit;
+}
+
+/* Whether something lies on a CM that is not believed; CMs too small to be read show nothing. */
+static bool is_hidden(const tmi_reading *reading, const believed_fit *others)
+{
+    if (reading->score < tmi_cm_score)
+        return true;
+    return reading->id != TMI_NO_ID && (reading->score < uncovered_part * others->score ||
+                                        reading->contrary > contrary_max + others->contrary);
+}
+
+/* Whether the blocks of the TM are as light or dark as the CMs that were read; and where some were, whether nothing
+ * hides the others. */
 static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, int first, int count, bool turned,
                    uint32_t code)
 {
+    const believed_fit fit = fit_of_believed(segment, reasons, first, count, turned);
     uint32_t known = 0, light = 0; /* the first CM's bit highest, as in the code */
-    bool covered = false;
     for (int cm = first; cm < first + count; cm++) {
         const tmi_reading *reading = &segment->readings[turned][cm];
-        known = known << 1 | (reasons[cm] == TMI_BELIEVED ? 1u : 0u);
+        const bool believed = reasons[cm] == TMI_BELIEVED;
+        known = known << 1 | (believed ? 1u : 0u);
         light = light << 1 | (reading->id >= 0 ? 1u : 0u);
-        covered = covered || reading->score < tmi_cm_score;
+        if (fit.count > 0 && !believed && is_hidden(reading, &fit))
+            return false;
     }
-    return ((code ^ light) & known) == 0 && !(known && covered);
+    return ((code ^ light) & known) == 0;
 }
 
 static bool any_believed(const tapemark_reject *reasons, int first, int count)

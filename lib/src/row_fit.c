@@ -159,6 +159,13 @@ static float slot_misfit(const tmi_wave *wave, const tmi_row *row, int k, bool r
     return right ? misfit(wave, row, &print, u + 4, u + 28.5f) : misfit(wave, row, &print, u - 3.5f, u + 21);
 }
 
+float tmi_wave_block_misfit(const tmi_wave *wave, const tmi_row *row, int k)
+{
+    const tmi_row_print print = print_of(wave, row);
+    const float u = (float)(PITCH * (row->first + k));
+    return misfit(wave, row, &print, u + 3.5f, u + 21.5f);
+}
+
 /* Paper or a wall beyond the tape's end fits a light block well, but not the finder at its far end. */
 static const float finder_misfit_max = 0.28f;
 

@@ -211,12 +211,14 @@ static bool holds_throughout(const sequence *s, const guess *g)
     return true;
 }
 
-/* CMs whose best words clearly show cells that do not belong to them. */
+/* CMs whose words clearly show more cells than this that do not belong to them have something on them. */
+enum { CONTRARY_MAX = 2 };
+
 static int damaged(const sequence *s)
 {
     int count = 0;
     for (int cm = s->first; cm < s->first + s->count; cm++)
-        count += s->segment->readings[s->turned][cm].contrary > 2;
+        count += s->segment->readings[s->turned][cm].contrary > CONTRARY_MAX;
     return count;
 }
 
@@ -238,6 +240,19 @@ static const float damaged_part_max = 1.8f, part_max = 1.3f, part_score_min = 0.
  * no other CM would be: then it may well be part of it, with the cells that made another word of it wrong. */
 static const float nearly_part = 0.3f;
 
+/* Something that lies on a CM may hide all that is its word's, and make the light one look dark, or the dark one
+ * light: the word has to leave this many times less unexplained than what all words share. */
+static const float own_word_min = 1.1f;
+
+static bool is_hidden(const tmi_cells *cells, const tmi_reading *as)
+{
+    tmi_evidence e;
+    if (as->contrary <= CONTRARY_MAX)
+        return false;
+    tmi_evidence_gather(&e, cells);
+    return own_word_min * unexplained(as->score) > unexplained(tmi_evidence_correlate(&e, NULL, 0));
+}
+
 /* Reads a CM as part of the sequence, or tells whether it is against it. */
 static tapemark_reject read_as(const sequence *s, const guess *g, int cm, float odds, tapemark_reject reason)
 {
@@ -251,6 +266,8 @@ static tapemark_reject read_as(const sequence *s, const guess *g, int cm, float 
     const float ratio = unexplained(as.score) / real_max(0.01f, unexplained(reading->score));
     if (as.id == TMI_NO_ID || as.score < part_score_min || ratio > (s->is_damaged ? damaged_part_max : part_max))
         return reason == TMI_BELIEVED && unexplained(as.score) < nearly_part ? TAPEMARK_REJECT_CONFLICT : reason;
+    if (is_hidden(&cells, &as))
+        return TAPEMARK_REJECT_CONFLICT;
     as.odds = odds;
     *reading = as;
     if (tmi_reading_confidence(&as) < s->reader->config->confidence_min)

@@ -94,6 +94,10 @@ bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work);
 /* Fits such a guess, and follows the row to both ends. */
 bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work);
 
+/* How far the wave is from the coding region of the row's CM k and the gaps beside it: root mean square, in parts of
+ * the depth. */
+float tmi_wave_block_misfit(const tmi_wave *wave, const tmi_row *row, int k);
+
 /* Fits the stripe to the finder patterns of the row, across: its place, direction and height. How the height changes
  * along it is a matter of perspective, as is the row's bend, which is known better. */
 bool tmi_wave_fit_across(const tmi_view *view, const tmi_wave *wave, const tmi_row *row, tmi_stripe *stripe,

@@ -1,6 +1,8 @@
 /* Several tapes in a frame, and tapes of which something is missing. */
 #include "decoding.h"
 
+#include <math.h>
+
 static const int32_t first_ids[] = {22, 23, -24, 25, -26, 27};
 static const int32_t second_ids[] = {-42, 43, 44, -45};
 
@@ -91,6 +93,44 @@ static void a_covered_cm_is_a_gap_and_no_wrong_id(void **state)
         if (count_read(got) + 1 < whole) /* one whose neighbour's finder is gone may go with it */
             fail_msg("cover at %d: %u of %u CMs were read", place, (unsigned)count_read(got), (unsigned)whole);
     }
+}
+
+/* How far off the CM of the result is that lies worst. */
+static double worst_corner_px(const decoding *got)
+{
+    double worst = 0;
+    for (size_t i = 0; i < got->result.cm_count; i++)
+        for (size_t k = 0; k < got->truth.cm_count; k++)
+            for (size_t c = 0; c < 4 && got->truth.cms[k].id == got->cms[i].id; c++)
+                worst = fmax(worst, hypot((double)(got->truth.cms[k].corners[c].x_px - got->cms[i].corners[c].x_px),
+                                          (double)(got->truth.cms[k].corners[c].y_px - got->cms[i].corners[c].y_px)));
+    return worst;
+}
+
+/* The last finder of the one is a little more than a CM's length from the first of the other, and their bars are too
+ * small to tell: no row is laid through both. */
+static void small_pieces_side_by_side_are_where_they_are(void **state)
+{
+    (void)state;
+    static const double sizes_px[] = {1.05, 1.15}, yaws_deg[] = {-20, 0, 10};
+    size_t read = 0;
+    for (size_t i = 0; i < COUNT_OF(sizes_px) * COUNT_OF(yaws_deg); i++)
+        for (int gap = 3; gap <= 6; gap++) {
+            scene view = scene_default(640, 160);
+            scene_tape tapes[2] = {scene_tape_of(first_ids, 6, true), scene_tape_of(second_ids, 4, true)};
+            scene_place(&view, &tapes[0], (scene_pose){.px_per_module = sizes_px[i / 3], .dx_px = -120, .roll_deg = 3,
+                                                       .yaw_deg = yaws_deg[i % 3]});
+            place_behind(&tapes[0], &tapes[1], gap);
+            view.tapes = tapes;
+            view.tape_count = 2;
+            const decoding *got = decode_scene(&view, NULL, "%.2f px a module, yaw %.0f, %d modules apart",
+                                               sizes_px[i / 3], yaws_deg[i % 3], gap);
+            assert_nothing_wrong(got, &view);
+            if (worst_corner_px(got) > 1.6)
+                fail_msg("%s: a CM is off by %.2f px", got->name, worst_corner_px(got));
+            read += got->result.cm_count;
+        }
+    assert_true(read > 150);
 }
 
 /* The upper half of the tape: bars and finders can be guessed, ids cannot. */
@@ -269,6 +309,7 @@ int main(void)
         cmocka_unit_test(reads_a_wall_full_of_tape),
         cmocka_unit_test(tapes_cut_by_the_border_are_no_wrong_tms),
         cmocka_unit_test(a_covered_cm_is_a_gap_and_no_wrong_id),
+        cmocka_unit_test(small_pieces_side_by_side_are_where_they_are),
         cmocka_unit_test(half_a_tape_is_no_wrong_id),
         cmocka_unit_test(bars_covered_in_part_are_bars),
         cmocka_unit_test(a_covered_block_is_not_taken_for_a_dark_one),
