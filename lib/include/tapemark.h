@@ -146,13 +146,14 @@ typedef struct tapemark_config {
     /* Largest |id| in use; no other id is reported. 0: TAPEMARK_MAX_ID. */
     int32_t id_max;
     /* The ids that are in use, in ascending order without repetition, which each call checks; borrowed for the
-     * call. Where given, no other id is reported, and they decide between words that fit about as well.
+     * call. Where given, no other id is reported, and theirs are surer: nothing else competes with them.
      * NULL with count 0: every id up to id_max. */
     const int32_t *known_ids;
     size_t known_id_count;
     /* Work allowed after the first pass over the image, in pixel reads (of some 100 instructions, all told). It
-     * bounds the time of the worst frame: what is underway when it is spent, a CM or a TM, is ended, and each CM
-     * that was read adds 2500, so that only work in vain counts. 0: tapemark_default_work_budget(). */
+     * bounds the time of the worst frame: what is underway when it is spent, a CM or a TM, is ended. Each finder
+     * pattern with another one in a CM's distance adds 1500, and each CM that was read 2500, so that it is work in
+     * vain that counts. 0: tapemark_default_work_budget(). */
     uint32_t work_budget;
 } tapemark_config;
 

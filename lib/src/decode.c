@@ -80,7 +80,7 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
     const tmi_point at = s->vertical ? (tmi_point){(float)line, hit->centre} : (tmi_point){hit->centre, (float)line};
     if (tmi_tape_finder_at(tape, at) != TMI_NONE)
         return;
-    if (stats->work >= tape->work_max) {
+    if (stats->work >= tmi_tape_work(tape, tape->work_max)) {
         stats->limits |= TAPEMARK_LIMIT_WORK;
         return;
     }
@@ -178,7 +178,7 @@ static void scan_lines(tmi_tape *tape, tmi_strokes *strokes, const tmi_tiles *ti
     const int32_t column_power = power_of_two_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
     int32_t row = 0, column = 0;
     for (int32_t step = 0; step < row_power || step < column_power; step++) {
-        if (tape->stats->work >= work_max) {
+        if (tape->stats->work >= tmi_tape_work(tape, work_max)) {
             tape->stats->limits |= TAPEMARK_LIMIT_SCAN;
             return;
         }
@@ -265,7 +265,7 @@ static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config
     stats->tiles_active = tiles.active;
     w->tape.view = view;
     w->tape.stats = stats;
-    w->tape.count = 0;
+    w->tape.count = w->tape.partners = 0;
     w->tape.work_max = part_of(config->work_budget, TRY_PERCENT);
     tmi_strokes_clear(&w->strokes);
     scan_lines(&w->tape, &w->strokes, &tiles, scan_work);
@@ -328,6 +328,7 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
     tmi_reader reader = {.view = &view,
                          .config = &settings,
                          .result = result,
+                         .work_max = tmi_tape_work(&w->tape, settings.work_budget),
                          .words = {settings.id_max, settings.known_ids, settings.known_id_count},
                          .upright = real_direction(settings.roll_deg)};
     keep_cells(&reader, &w->tape);

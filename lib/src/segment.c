@@ -24,7 +24,7 @@ enum { CM_CREDIT = 2500 };
 bool tmi_may_go_on(const tmi_reader *reader)
 {
     tapemark_stats *stats = &reader->result->stats;
-    if (stats->work < (uint64_t)reader->config->work_budget + (uint64_t)CM_CREDIT * stats->cms_read)
+    if (stats->work < reader->work_max + (uint64_t)CM_CREDIT * stats->cms_read)
         return true;
     stats->limits |= TAPEMARK_LIMIT_WORK;
     return false;

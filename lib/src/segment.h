@@ -10,6 +10,7 @@ typedef struct tmi_reader {
     const tmi_view *view;
     const tapemark_config *config; /* defaults filled in */
     tapemark_result *result;
+    uint64_t work_max; /* what is spent in vain goes on no longer than until stats->work has reached this */
     tmi_words words;
     tmi_point upright; /* direction in which upright tapes read, by the caller's hint; a unit vector */
     tmi_cells *kept;   /* room for the cells of the segment's first CMs as they were read, */

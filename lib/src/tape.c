@@ -48,20 +48,6 @@ int tmi_tape_finder_at(const tmi_tape *tape, tmi_point at)
     return TMI_NONE;
 }
 
-int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
-{
-    if (tape->count == TMI_MAX_FINDERS) {
-        tape->stats->limits |= TAPEMARK_LIMIT_CANDIDATES;
-        return TMI_NONE;
-    }
-    tmi_node *node = &tape->nodes[tape->count];
-    node->finder = *finder;
-    for (int d = 0; d < TMI_DIRECTIONS; d++)
-        node->neighbour[d] = TMI_NONE;
-    tape->stats->finders++;
-    return tape->count++;
-}
-
 /* ---- Links between located finders ------------------------------------------------------------------------ */
 
 /* Bounds with room for steep perspective, which makes a pitch look shorter or longer in the modules of its one end,
@@ -99,20 +85,49 @@ static float misfit(const tmi_finder *f, int direction, const tmi_finder *other,
     return -1;
 }
 
-static int best_neighbour(const tmi_tape *tape, int i, int direction, int *direction_back)
+static int best_neighbour(const tmi_tape *tape, int i, int direction, int *direction_back, float *least)
 {
     int best = TMI_NONE;
-    float least = 0;
     for (int j = 0; j < tape->count; j++) {
         int back = 0;
         const float m = j == i ? -1 : misfit(&tape->nodes[i].finder, direction, &tape->nodes[j].finder, &back);
-        if (m < 0 || (best != TMI_NONE && m >= least))
+        if (m < 0 || (best != TMI_NONE && m >= *least))
             continue;
         best = j;
-        least = m;
+        *least = m;
         *direction_back = back;
     }
     return best;
+}
+
+/* What lies this far from the next finder of its row, in all, modules, hardly does so by chance. */
+static const float partner_misfit = 4;
+
+static bool has_partner(const tmi_tape *tape, int i)
+{
+    for (int d = 0; d < TMI_DIRECTIONS; d++) {
+        int back;
+        float least = 0;
+        if (best_neighbour(tape, i, d, &back, &least) != TMI_NONE && least < partner_misfit)
+            return true;
+    }
+    return false;
+}
+
+int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
+{
+    if (tape->count == TMI_MAX_FINDERS) {
+        tape->stats->limits |= TAPEMARK_LIMIT_CANDIDATES;
+        return TMI_NONE;
+    }
+    tmi_node *node = &tape->nodes[tape->count];
+    node->finder = *finder;
+    for (int d = 0; d < TMI_DIRECTIONS; d++)
+        node->neighbour[d] = TMI_NONE;
+    tape->stats->finders++;
+    if (has_partner(tape, tape->count))
+        tape->partners++;
+    return tape->count++;
 }
 
 static void join(tmi_tape *tape, int i, int direction, int j, int direction_back)
@@ -131,7 +146,8 @@ static void link_located(tmi_tape *tape)
     for (int i = 0; i < tape->count; i++)
         for (int d = 0; d < TMI_DIRECTIONS; d++) {
             int back = 0;
-            best[i][d].node = (int8_t)best_neighbour(tape, i, d, &back);
+            float least = 0;
+            best[i][d].node = (int8_t)best_neighbour(tape, i, d, &back, &least);
             best[i][d].back = (int8_t)back;
         }
     for (int i = 0; i < tape->count; i++)
@@ -225,7 +241,7 @@ static void grow(tmi_tape *tape, int i, int direction)
     tmi_finder next = foretell(tape, i, direction);
     if (!inside(tape->view, next.centre))
         return;
-    if (tape->stats->work >= tape->work_max) {
+    if (tape->stats->work >= tmi_tape_work(tape, tape->work_max)) {
         tape->stats->limits |= TAPEMARK_LIMIT_WORK;
         return;
     }

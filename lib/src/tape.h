@@ -23,8 +23,18 @@ typedef struct tmi_tape {
     tapemark_stats *stats;
     uint32_t work_max; /* no search is begun once stats->work has reached this */
     int count;
+    int partners;      /* finders that were located with another one in a CM's distance */
     tmi_node nodes[TMI_MAX_FINDERS];
 } tmi_tape;
+
+/* Where there are tapes, there is more to look for: a finder with a partner has paid for so much. */
+enum { TMI_PARTNER_CREDIT = 1500 };
+
+/* This much work, and what finders have paid for. */
+static inline uint64_t tmi_tape_work(const tmi_tape *tape, uint32_t work)
+{
+    return (uint64_t)work + (uint64_t)TMI_PARTNER_CREDIT * (uint64_t)tape->partners;
+}
 
 /* The finder pattern whose 7 x 7 modules (and half a module around) hold this point, or TMI_NONE. */
 int tmi_tape_finder_at(const tmi_tape *tape, tmi_point at);

@@ -29,6 +29,30 @@ static void reads_every_tape_in_the_frame(void **state)
     assert_int_equal(got->result.cm_count, 16);
 }
 
+/* As on a shelf: with the default budget all are read, for where tapes are there is more to look for. */
+static void reads_a_frame_full_of_tapes(void **state)
+{
+    (void)state;
+    enum { TAPES = 10, CMS = 6 };
+    scene view = scene_default(640, 480);
+    int32_t ids[TAPES][CMS];
+    scene_tape tapes[TAPES];
+    for (int i = 0; i < TAPES; i++) {
+        for (int k = 0; k < CMS; k++)
+            ids[i][k] = (k + i) % 3 == 0 ? -(10 * i + k + 1) : 10 * i + k + 1;
+        tapes[i] = scene_tape_of(ids[i], CMS, true);
+        scene_place(&view, &tapes[i],
+                    (scene_pose){.px_per_module = 1.5 + 0.15 * i, .dy_px = 44.0 * i - 200, .roll_deg = 1});
+    }
+    view.tapes = tapes;
+    view.tape_count = TAPES;
+    const decoding *got = decode_scene(&view, NULL, "ten tapes");
+    assert_nothing_wrong(got, &view);
+    if (got->result.cm_count < TAPES * CMS - 2 || got->result.tm_count < TAPES)
+        fail_msg("%u CMs and %u TMs were read, limits %x", (unsigned)got->result.cm_count,
+                 (unsigned)got->result.tm_count, (unsigned)got->result.stats.limits);
+}
+
 /* The second tape follows the first one on the same line, this many modules on. */
 static void place_behind(const scene_tape *first, scene_tape *second, double gap_modules)
 {
@@ -305,6 +329,7 @@ int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_every_tape_in_the_frame),
+        cmocka_unit_test(reads_a_frame_full_of_tapes),
         cmocka_unit_test(reads_pieces_side_by_side),
         cmocka_unit_test(reads_a_wall_full_of_tape),
         cmocka_unit_test(tapes_cut_by_the_border_are_no_wrong_tms),

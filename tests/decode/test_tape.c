@@ -38,7 +38,7 @@ static void render_tape(scene_pose pose)
     set.tape.view = &set.view;
     set.tape.stats = &set.stats;
     set.tape.work_max = 1000000;
-    set.tape.count = 0;
+    set.tape.count = set.tape.partners = 0;
 }
 
 /* The same square, `quarters` turned: which axis runs along the tape is not known of a lone finder. */
@@ -140,6 +140,7 @@ static void without_work_left_nothing_is_foretold(void **state)
     set.tape.work_max = 0;
     tmi_tape_add(&set.tape, &set.finders[2]);
     tmi_tape_add(&set.tape, &set.finders[3]);
+    set.stats.work = 1500; /* what the second one added, for it has the first one for a partner */
     tmi_tape_link(&set.tape);
     assert_int_equal(set.tape.count, 2);
     assert_int_equal(set.stats.limits, TAPEMARK_LIMIT_WORK);
