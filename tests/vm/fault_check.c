@@ -160,6 +160,31 @@ static void check_commands(stream_session *session)
     finish(session, "commands on the line", good, none, "PING, and SET of the encoding");
 }
 
+/* ---- The clock ------------------------------------------------------------------------------------------------- */
+
+/* Frames go on in their order and at their pace, and neither camera nor port is taken for lost. */
+static void check_clock(stream_session *session)
+{
+    enum { FRAMES = 25, JUMPS_MIN = 5 };
+    char details[100];
+    frame_check *check = &session->check;
+    bool good = begin(session, "v4l2:/dev/video0") && frames_come(session) &&
+                machine_do(&session->board, SOON_MS, "jump_clock") == 0;
+    /* It begins before the camera gives frames. */
+    const uint64_t losses = check->losses;
+    check->status_flags = 0;
+    check->lag_max_us = 0;
+    good = good && session_until(session, &check->whole, FRAMES, SOON_MS) &&
+           machine_do(&session->board, SOON_MS, "end_jumps") == 0;
+    const char *told = strstr(session->board.answer, "set ");
+    const unsigned long jumps = told != NULL ? strtoul(told + strlen("set "), NULL, 10) : 0;
+    good = good && jumps >= JUMPS_MIN && check->losses == losses && check->lag_max_us < LAG_MAX_US &&
+           (check->status_flags & (TAPEMARK_STATUS_PORT_STALLED | TAPEMARK_STATUS_CAMERA_LOST)) == 0;
+    snprintf(details, sizeof details, "%lu times, by hours and years, latest frame %.0f ms late", jumps,
+             check->lag_max_us * 1e-3);
+    finish(session, "time of day set back and forth", good, none, details);
+}
+
 /* ---- The end --------------------------------------------------------------------------------------------------- */
 
 static void check_end(stream_session *session)
@@ -191,5 +216,6 @@ void check_faults(stream_session *session)
     check_held_line(session);
     check_damaged_line(session);
     check_commands(session);
+    check_clock(session);
     check_end(session);
 }
