@@ -26,7 +26,7 @@ static bool is_unresolved(tmi_bars_place place)
 
 /* Bars too fine to be resolved: half as dark as dark modules, then light. Coding regions are either much darker or
  * much lighter than that, and what is left of one beside something that covers the rest is darker at one end. */
-static const float uneven_max = 0.27f;
+static const float uneven_max = 0.55f;
 
 static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
 {
