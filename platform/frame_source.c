@@ -75,7 +75,14 @@ frame_source *frame_source_open_file(const char *path, const frame_layout *raw, 
 
 frame_status frame_source_next(frame_source *source, frame *output, error_text *error)
 {
-    return source->methods->next(source, output, error);
+    frame_status status = source->methods->next(source, output, error);
+    if (status == FRAME_READY)
+        source->has_given = true;
+    if (status == FRAME_END && !source->has_given) {
+        error_text_set(error, "holds no frames");
+        return FRAME_FAILED;
+    }
+    return status;
 }
 
 void frame_source_close(frame_source *source)

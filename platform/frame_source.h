@@ -28,6 +28,7 @@ typedef struct frame_source_methods {
 struct frame_source {
     const frame_source_methods *methods;
     uint64_t frames_expected;  /* about how many there will be, for progress; 0 while unknown */
+    bool has_given;            /* a frame: set by frame_source_next() */
 };
 
 /* Opens a file by what it contains, not by its name: PGM, Y4M, JPEG and other still pictures, videos. With
@@ -36,7 +37,8 @@ struct frame_source {
 frame_source *frame_source_open_file(const char *path, const frame_layout *raw, error_text *error);
 
 /* What `output` points to stays valid until the next call for this source. Frames before a damaged place are
- * given first. After FRAME_END or FRAME_FAILED a source is only good for closing. */
+ * given first. A source without any frame is a failure. After FRAME_END or FRAME_FAILED it is only good for
+ * closing. */
 frame_status frame_source_next(frame_source *source, frame *output, error_text *error);
 
 /* NULL is fine. */

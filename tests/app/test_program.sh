@@ -151,6 +151,8 @@ expect_refusal 1 'two?lines' "$strange"
 expect_refusal 1 'tapemark-decode: nowhere/a.pgm: cannot be opened: No such file' nowhere/a.pgm
 : >empty.png
 expect_refusal 1 'tapemark-decode: empty.png: is empty' empty.png
+echo 'YUV4MPEG2 W64 H64 F25:1' >header.y4m
+expect_refusal 1 'tapemark-decode: header.y4m: holds no frames' header.y4m
 expect_refusal 1 'tapemark-decode: set/notes.txt: is no picture or video' set/notes.txt
 expect_refusal 1 'cannot be read' /proc/self/mem
 if [ "$(id -u)" -ne 0 ]; then
