@@ -151,9 +151,9 @@ typedef struct tapemark_config {
     const int32_t *known_ids;
     size_t known_id_count;
     /* Work allowed after the first pass over the image, in pixel reads (of some 100 instructions, all told). It
-     * bounds the time of the worst frame: what is underway when it is spent, a CM or a TM, is ended. Each finder
-     * pattern with another one in a CM's distance adds 1500, and each CM that was read 2500, so that it is work in
-     * vain that counts. 0: tapemark_default_work_budget(). */
+     * bounds the time of the worst frame: what is underway when it is spent, a CM or a TM, is ended. Each of the
+     * first 20 finder patterns with another one in a CM's distance adds 1500, and each CM that was read 2500, so
+     * that it is work in vain that counts. 0: tapemark_default_work_budget(). */
     uint32_t work_budget;
 } tapemark_config;
 

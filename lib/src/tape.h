@@ -27,13 +27,15 @@ typedef struct tmi_tape {
     tmi_node nodes[TMI_MAX_FINDERS];
 } tmi_tape;
 
-/* Where there are tapes, there is more to look for: a finder with a partner has paid for so much. */
-enum { TMI_PARTNER_CREDIT = 1500 };
+/* Where there are tapes, there is more to look for: a finder with a partner has paid for so much. So many may pay:
+ * where there are more, in carpets of finder patterns, the slowest frame would be slower still. */
+enum { TMI_PARTNER_CREDIT = 1500, TMI_PARTNERS_MAX = 20 };
 
 /* This much work, and what finders have paid for. */
 static inline uint64_t tmi_tape_work(const tmi_tape *tape, uint32_t work)
 {
-    return (uint64_t)work + (uint64_t)TMI_PARTNER_CREDIT * (uint64_t)tape->partners;
+    const int partners = tape->partners < TMI_PARTNERS_MAX ? tape->partners : TMI_PARTNERS_MAX;
+    return (uint64_t)work + (uint64_t)TMI_PARTNER_CREDIT * (uint64_t)partners;
 }
 
 /* The finder pattern whose 7 x 7 modules (and half a module around) hold this point, or TMI_NONE. */

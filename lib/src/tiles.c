@@ -44,11 +44,11 @@ static void column_extremes(const uint8_t *restrict p, ptrdiff_t stride, int32_t
     }
 }
 
-/* Joins columns two by two. */
-TMI_ONCE static void join_pairs(const uint8_t *restrict columns, int32_t pairs, uint8_t *restrict joined)
+/* Joins values two by two. */
+TMI_ONCE static void join_pairs(const uint8_t *restrict from, int32_t pairs, uint8_t *restrict to)
 {
     for (int32_t i = 0; i < pairs; i++)
-        joined[i] = lesser(columns[2 * i], columns[2 * i + 1]);
+        to[i] = lesser(from[2 * i], from[2 * i + 1]);
 }
 
 /* Joins the columns of each tile, the last of which may be cut off. */

@@ -184,12 +184,12 @@ static void claim_finder(const tapemark_finder *finder)
 /* Beyond the budget goes only what was underway when it was spent, what was read, and what finders add to it. */
 static void claim_work(const tapemark_stats *stats, const tapemark_config *config, const tapemark_image *image)
 {
-    enum { WORK_OF_A_CM_READ = 2500, WORK_OF_A_FINDER = 1500, WORK_UNDERWAY = 120000 };
+    enum { WORK_OF_A_CM_READ = 2500, WORK_OF_FINDERS = 20 * 1500, WORK_UNDERWAY = 120000 };
     const uint64_t budget = config->work_budget > 0
                                 ? config->work_budget
                                 : tapemark_default_work_budget(image->width_px, image->height_px);
-    CLAIM(stats->work <= budget + (uint64_t)WORK_OF_A_CM_READ * stats->cms_read +
-                             (uint64_t)WORK_OF_A_FINDER * stats->finders + WORK_UNDERWAY);
+    CLAIM(stats->work <=
+          budget + (uint64_t)WORK_OF_A_CM_READ * stats->cms_read + WORK_OF_FINDERS + WORK_UNDERWAY);
     CLAIM(stats->tiles_active <= stats->tiles);
 }
 
