@@ -8,7 +8,8 @@
 
 #include "random.h"
 
-enum { SLACK_READS = 40000, READS_PER_CM = 2500, READS_OF_FINDERS = 20 * 1500, SECONDS_MAX = 20, PAPER = 210, INK = 25 };
+enum { SLACK_READS = 40000, READS_PER_CM = 2500, READS_OF_FINDERS = 20 * 1500 };
+enum { SECONDS_MAX = 20, PAPER = 210, INK = 25 };
 
 static const int32_t ids[] = {71, -72, 73};
 enum { IDS = 3 };
