@@ -125,7 +125,7 @@ int tmi_tape_add(tmi_tape *tape, const tmi_finder *finder)
     for (int d = 0; d < TMI_DIRECTIONS; d++)
         node->neighbour[d] = TMI_NONE;
     tape->stats->finders++;
-    if (has_partner(tape, tape->count))
+    if (tape->partners < TMI_PARTNERS_MAX && has_partner(tape, tape->count))
         tape->partners++;
     return tape->count++;
 }

@@ -23,7 +23,7 @@ typedef struct tmi_tape {
     tapemark_stats *stats;
     uint32_t work_max; /* no search is begun once stats->work has reached this */
     int count;
-    int partners;      /* finders that were located with another one in a CM's distance */
+    int partners;      /* finders that were located with another one in a CM's distance, TMI_PARTNERS_MAX at most */
     tmi_node nodes[TMI_MAX_FINDERS];
 } tmi_tape;
 
@@ -34,8 +34,7 @@ enum { TMI_PARTNER_CREDIT = 1500, TMI_PARTNERS_MAX = 20 };
 /* This much work, and what finders have paid for. */
 static inline uint64_t tmi_tape_work(const tmi_tape *tape, uint32_t work)
 {
-    const int partners = tape->partners < TMI_PARTNERS_MAX ? tape->partners : TMI_PARTNERS_MAX;
-    return (uint64_t)work + (uint64_t)TMI_PARTNER_CREDIT * (uint64_t)partners;
+    return (uint64_t)work + (uint64_t)TMI_PARTNER_CREDIT * (uint64_t)tape->partners;
 }
 
 /* The finder pattern whose 7 x 7 modules (and half a module around) hold this point, or TMI_NONE. */

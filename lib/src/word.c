@@ -282,8 +282,8 @@ void tmi_word_match(const tmi_cells *cells, const tmi_words *words, tmi_reading 
     if (reading->id != TMI_NO_ID && (words->known_ids || words->id_max < TAPEMARK_MAX_ID)) {
         tmi_reading known;
         best_two(scores, ids, count, words, false, &known);
-        /* A word that is not the best one is not read, be the best one's id unknown: it may be the tape of another
-         * plan. Of a known one, only others that are known can take the place. */
+        /* Where the best word's id is unknown, no known one is read in its place: it may be the tape of another plan.
+         * A known one that is the best has only other known ones to be told from. */
         if (known.id == reading->id)
             *reading = known;
         else
