@@ -63,7 +63,7 @@ for kept in "$data"/*; do
     case $name in
     README.md) continue ;;
     # What was measured, with a page of its own that names its command.
-    evaluation | soak) continue ;;
+    evaluation | lies | soak) continue ;;
     esac
     if [ ! -f "data/$name" ]; then
         # Pictures that other programs drew for people to look at.
