@@ -13,7 +13,10 @@
 /* Within the hidden directory: where files in place go that have to give way, until all are moved. */
 #define EARLIER "earlier"
 
-enum { REMOVAL_ATTEMPTS = 100 };
+/* Behind the hidden directory's name once a signal ended the work on it. */
+#define ENDED "-ended"
+
+enum { REMOVAL_ATTEMPTS = 10 };
 
 struct output_directory {
     char *path;       /* without slashes at its end */
@@ -91,7 +94,7 @@ static void release_entries(entry_list *list)
         free(list->entries);
 }
 
-/* Another thread may be adding files still: that ends when it notices that the directory is gone. */
+/* Another thread may be adding a last file still. */
 static void remove_files(const char *folder)
 {
     int attempts = 0;
@@ -107,15 +110,27 @@ static void remove_files(const char *folder)
     } while (rmdir(folder) != 0 && (errno == ENOTEMPTY || errno == EEXIST) && ++attempts < REMOVAL_ATTEMPTS);
 }
 
-static void remove_temporary(const output_directory *directory)
+static void remove_temporary(const char *temporary)
 {
-    if (directory->temporary == NULL)
+    if (temporary == NULL)
         return;
-    char *earlier = join_path(directory->temporary, EARLIER);
+    char *earlier = join_path(temporary, EARLIER);
     if (earlier != NULL)
         remove_files(earlier);
     free(earlier);
-    remove_files(directory->temporary);
+    remove_files(temporary);
+}
+
+/* The program's other threads go on writing meanwhile: under another name they do not find the directory any more,
+ * and cannot add files faster than they are removed. */
+static void remove_under_way(const char *temporary)
+{
+    size_t size = temporary != NULL ? strlen(temporary) + sizeof ENDED : 0;
+    char *ended = size > 0 ? malloc(size) : NULL;
+    if (ended != NULL)
+        snprintf(ended, size, "%s%s", temporary, ENDED);
+    remove_temporary(ended != NULL && rename(temporary, ended) == 0 ? ended : temporary);
+    free(ended);
 }
 
 /* ---- Interruption -------------------------------------------------------------------------------------------- */
@@ -129,7 +144,7 @@ static void *watch(void *argument)
         return NULL;
     pthread_setcancelstate(PTHREAD_CANCEL_DISABLE, NULL);
     pthread_mutex_lock(&directory->moving);
-    remove_temporary(directory);
+    remove_under_way(directory->temporary);
     signal(number, SIG_DFL);
     pthread_sigmask(SIG_UNBLOCK, &directory->watched, NULL);
     raise(number);
@@ -324,7 +339,7 @@ bool output_directory_publish(output_directory *directory, error_text *error)
     pthread_mutex_lock(&directory->moving);
     bool done = directory->existed ? publish_into(directory, &removable, error) : publish_whole(directory, error);
     if (removable)
-        remove_temporary(directory);
+        remove_temporary(directory->temporary);
     pthread_mutex_unlock(&directory->moving);
     release(directory);
     return done;
@@ -334,7 +349,7 @@ void output_directory_discard(output_directory *directory)
 {
     if (directory == NULL)
         return;
-    remove_temporary(directory);
+    remove_temporary(directory->temporary);
     release(directory);
 }
 

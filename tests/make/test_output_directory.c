@@ -3,6 +3,8 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <limits.h>
+#include <pthread.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -174,19 +176,29 @@ static void messages_name_the_final_place(void **state)
     output_directory_discard(directory);
 }
 
-/* A process that writes files until it is told to stop. */
-static void write_for_ever(int ready)
+static void *write_for_ever(void *directory)
 {
-    output_directory *directory = open_output("old");
-    for (unsigned i = 0;; i++) {
+    for (unsigned i = 0; i < UINT_MAX; i++) {
         char path[400];
         snprintf(path, sizeof path, "%s/%u", output_directory_path(directory), i % 50);
         FILE *file = fopen(path, "w");
         if (file != NULL)
             fclose(file);
-        if (i == 10 && write(ready, "", 1) != 1)
-            _exit(1);
     }
+    return NULL;
+}
+
+/* A process that writes files until it is told to stop, in more threads than the one that then removes them. */
+static void write_in_threads(int ready)
+{
+    output_directory *directory = open_output("old");
+    pthread_t others[3];
+    for (size_t i = 0; i < COUNT_OF(others); i++)
+        if (pthread_create(&others[i], NULL, write_for_ever, directory) != 0)
+            _exit(1);
+    if (write(ready, "", 1) != 1)
+        _exit(1);
+    write_for_ever(directory);
 }
 
 static void a_signal_removes_what_is_unfinished(void **state)
@@ -202,7 +214,7 @@ static void a_signal_removes_what_is_unfinished(void **state)
         pid_t child = fork();
         assert_true(child >= 0);
         if (child == 0)
-            write_for_ever(ends[1]);
+            write_in_threads(ends[1]);
         assert_int_equal(read(ends[0], &byte, 1), 1);
         assert_int_equal(kill(child, signals[i % COUNT_OF(signals)]), 0);
         assert_int_equal(waitpid(child, &status, 0), child);
