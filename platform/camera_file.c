@@ -37,6 +37,7 @@ typedef struct file_camera {
     played_input playing;    /* closed between two inputs */
     pace pace;
     double rate_hz;
+    double wished_hz;        /* by whom it was set up */
     int timer;               /* readable from the time on that the next frame is due */
 
     /* The frame that comes next was read already, to know when it is due. */
@@ -108,6 +109,18 @@ static int64_t recorded_due_ns(file_camera *self, int64_t last_due_ns)
     return due_ns > last_due_ns ? due_ns : last_due_ns;
 }
 
+static bool has_own_times(const file_camera *self)
+{
+    return self->pace == PACE_RECORDED && self->source_first_time_ns != FRAME_TIME_UNKNOWN;
+}
+
+static void keep_period(file_camera *self, int64_t period_ns)
+{
+    self->period_ns = period_ns;
+    if (has_own_times(self) && self->frame_count > 0)
+        self->base.settings.mode.rate_hz = 1e9 / (double)period_ns;
+}
+
 static void find_due_time(file_camera *self)
 {
     int64_t last_due_ns = self->next_one.due_ns;
@@ -115,7 +128,7 @@ static void find_due_time(file_camera *self)
     case PACE_RECORDED:
         self->next_one.due_ns = recorded_due_ns(self, last_due_ns);
         if (self->next_one.due_ns > last_due_ns)
-            self->period_ns = self->next_one.due_ns - last_due_ns;
+            keep_period(self, self->next_one.due_ns - last_due_ns);
         break;
     case PACE_RATE:
         self->next_one.due_ns = self->frame_count == 0 ? last_due_ns : last_due_ns + self->period_ns;
@@ -155,12 +168,21 @@ static void read_ahead(file_camera *self)
 
 /* ---- The camera ----------------------------------------------------------------------------------------- */
 
-/* A recording is played as it is: of all wishes the rate alone counts, where nothing else tells it. */
+/* Not known of free ones, and of a recording with times of its own not before its second frame. */
+static double rate_at_first_hz(const file_camera *self)
+{
+    return self->pace == PACE_FREE || has_own_times(self) ? 0 : self->rate_hz;
+}
+
+/* A recording is played as it is: of all wishes the rate alone counts, at first, where nothing else tells it. */
 static bool configure(camera *base, const camera_wishes *wishes, error_text *error)
 {
     file_camera *self = (file_camera *)base;
+    if (self->timer >= 0 && wishes->rate_hz != self->wished_hz)
+        error_text_set(error, "is a recording: its rate cannot be set");
     if (self->timer >= 0)
-        return true;
+        return wishes->rate_hz == self->wished_hz;
+    self->wished_hz = wishes->rate_hz;
     self->timer = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
     if (self->timer < 0) {
         error_text_set(error, "cannot be played: %s", strerror(errno));
@@ -178,7 +200,7 @@ static bool configure(camera *base, const camera_wishes *wishes, error_text *err
     if (self->ahead == CAMERA_FRAME) {
         const frame_layout *layout = &self->next_one.image.layout;
         base->settings.mode = (camera_mode){layout->format, false, layout->width_px, layout->height_px,
-                                            self->pace == PACE_FREE ? 0 : self->rate_hz};
+                                            rate_at_first_hz(self)};
     }
     return true;
 }

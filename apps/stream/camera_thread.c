@@ -137,6 +137,7 @@ static bool take_frame(camera_thread *self)
     error_text error = {""};
     pthread_mutex_lock(&self->reach);
     camera_status status = camera_next(self->device, 0, &got, &error);
+    note_settings(self); /* a recording shows its rate as it goes on */
     pthread_mutex_unlock(&self->reach);
     if (status == CAMERA_TIMEOUT)
         return true;

@@ -2,6 +2,7 @@
 #include "../app/test_main.h"
 
 #include <fcntl.h>
+#include <math.h>
 #include <poll.h>
 #include <sys/stat.h>
 #include <time.h>
@@ -128,8 +129,10 @@ static void frames_come_at_their_pace(void **state)
     write_y4m("a.y4m", 50, 6);
     player p = play("file:", "a.y4m");
     assert_int_equal(camera_settings_of(p.device)->mode.width_px, WIDTH);
+    assert_true(camera_settings_of(p.device)->mode.rate_hz == 0);
     assert_int_equal(play_to_the_end(&p, 20000000, NULL), 6);
     assert_true(camera_clock_ns() - p.start_ns >= INT64_C(95000000));
+    assert_true(fabs(camera_settings_of(p.device)->mode.rate_hz - 50) < 0.01);
     camera_close(p.device);
 }
 
@@ -138,6 +141,7 @@ static void a_rate_takes_the_place_of_the_recorded_one(void **state)
     (void)state;
     write_y4m("a.y4m", 1, 4);
     player p = play("file:", "a.y4m@100");
+    assert_true(camera_settings_of(p.device)->mode.rate_hz == 100);
     assert_int_equal(play_to_the_end(&p, 10000000, NULL), 4);
     assert_in_range(camera_clock_ns() - p.start_ns, 29000000, INT64_C(30000000000));
     camera_close(p.device);
@@ -372,6 +376,18 @@ static void a_directory_is_played_in_order(void **state)
     camera_close(p.device);
 }
 
+static void a_recording_keeps_its_rate(void **state)
+{
+    (void)state;
+    write_y4m("a.y4m", 50, 4);
+    player p = play("file:", "a.y4m");
+    assert_true(camera_configure(p.device, &(camera_wishes){0}, &p.error));
+    assert_false(camera_configure(p.device, &(camera_wishes){.rate_hz = 20}, &p.error));
+    assert_string_equal(p.error.text, "is a recording: its rate cannot be set");
+    assert_int_equal(play_to_the_end(&p, 20000000, NULL), 4);
+    camera_close(p.device);
+}
+
 static void a_recording_has_no_light_to_set(void **state)
 {
     (void)state;
@@ -403,6 +419,7 @@ int main(void)
         cmocka_unit_test(what_is_wrong_is_told),
         cmocka_unit_test(headless_frames_are_played),
         cmocka_unit_test(a_directory_is_played_in_order),
+        cmocka_unit_test(a_recording_keeps_its_rate),
         cmocka_unit_test(a_recording_has_no_light_to_set),
     };
     return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -143,6 +143,8 @@ static void commands_are_answered(void **state)
         {"SET", "exposure", "0", "ERR", "1 to 10000000 or auto"},
         {"SET", "gain", "auto", "OK", "auto"},
         {"GET", "rate", NULL, "OK", "100"},
+        {"SET", "rate", "200", "ERR", "is a recording: its rate cannot be set"},
+        {"GET", "rate", NULL, "OK", "100"},
         {"GET", "colour", NULL, "ERR", "exposure gain rate encoding or roi"},
         {"DANCE", NULL, NULL, "ERR", "PING VERSION GET or SET"},
     };
