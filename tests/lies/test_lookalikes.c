@@ -91,6 +91,33 @@ static void a_reflection_on_the_floor_is_no_second_tape(void **state)
             }
 }
 
+/* ---- Without rings ------------------------------------------------------------------------------------------- */
+
+/* As much ink as a finder pattern has, spread evenly. */
+static void print_gray_square(printed *print, int column, int row)
+{
+    enum { DARK = 24 + 9, ALL = HEIGHT * HEIGHT };
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < HEIGHT; x++)
+            print->shades[(row + y) * print->columns + column + x] = (uint8_t)(PAPER - (PAPER - INK) * DARK / ALL);
+}
+
+/* From afar such a row is as light and dark as a tape; but where rings could be seen, there are none. */
+static void gray_squares_in_a_row_are_no_tape(void **state)
+{
+    (void)state;
+    static const double far_px[] = {0.75, 0.85, 0.95, 1.1, 1.3};
+    static printed print;
+    print_nothing(&print, BARED + 4, HEIGHT + 2);
+    print_segment(&print, 2, 1, ids, IDS, true);
+    for (int i = 0; i <= IDS; i++)
+        print_gray_square(&print, 2 + TAPEMARK_BAR_MODULES + TAPEMARK_CM_PITCH_MODULES * i, 1);
+    for (size_t s = 0; s < COUNT_OF(far_px); s++)
+        for (int roll_deg = 0; roll_deg < 360; roll_deg += 45)
+            assert_no_marker(decode_print(
+                &print, (scene_pose){.px_per_module = far_px[s], .roll_deg = roll_deg}, NULL, "gray squares"));
+}
+
 /* ---- Other things beside a tape ---------------------------------------------------------------------------- */
 
 /* A square code of 25 modules with three finder patterns. */
@@ -252,6 +279,7 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_mirrored_tape_has_no_ids),
         cmocka_unit_test(a_reflection_on_the_floor_is_no_second_tape),
+        cmocka_unit_test(gray_squares_in_a_row_are_no_tape),
         cmocka_unit_test(square_codes_beside_a_tape_add_nothing),
         cmocka_unit_test(crossing_tapes_are_not_mixed),
         cmocka_unit_test(joined_tapes_read_what_is_whole),
