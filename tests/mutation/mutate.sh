@@ -35,7 +35,7 @@ first_failure()
 {
     ctest --test-dir "$build" -j "$(nproc)" --stop-on-failure --timeout 3000 \
         -R '^(unit|link|decode|lies)/' 2>/dev/null |
-        sed -n 's/^.*Test *#[0-9]*: \([^ ]*\) .*\*\*\*.*$/\1/p' | grep -v Skipped | head -n 1
+        sed -n '/\*\*\*Skipped/!s/^.*Test *#[0-9]*: \([^ ]*\) .*\*\*\*.*$/\1/p' | head -n 1
 }
 
 failing=$(first_failure)
