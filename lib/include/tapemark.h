@@ -139,7 +139,7 @@ typedef struct tapemark_config {
     /* Direction in which upright tapes read, clockwise from the image's x axis, -360 to 360. 0: to the right. */
     float roll_deg;
     tapemark_polarity polarity;
-    /* Least difference between light and dark, in gray levels, 1 to 255. 0: 6. */
+    /* Least difference between light and dark, in gray levels, 1 to 255. 0: 5. */
     uint8_t contrast_min;
     /* Least confidence of a reported CM, 0 to 1. 0: the built-in rule alone decides. */
     float confidence_min;

@@ -64,9 +64,14 @@ uint32_t tapemark_default_work_budget(int32_t width_px, int32_t height_px)
 typedef struct seeker {
     tmi_tape *tape;
     tmi_strokes *strokes;
-    float contrast_min; /* of a hit */
+    const tmi_tiles *tiles;
     bool vertical;
 } seeker;
+
+static ptrdiff_t tile_at(const tmi_tiles *tiles, tmi_point at)
+{
+    return (int32_t)at.y / TAPEMARK_TILE_PX * tiles->pitch + (int32_t)at.x / TAPEMARK_TILE_PX;
+}
 
 static void try_hit(void *context, int32_t line, const tmi_hit *hit)
 {
@@ -75,9 +80,9 @@ static void try_hit(void *context, int32_t line, const tmi_hit *hit)
     tapemark_stats *stats = tape->stats;
     stats->pattern_hits++;
     stats->work += HIT_WORK;
-    if (hit->contrast < s->contrast_min)
-        return;
     const tmi_point at = s->vertical ? (tmi_point){(float)line, hit->centre} : (tmi_point){hit->centre, (float)line};
+    if (!tmi_is_contrast(s->tiles, tile_at(s->tiles, at), (int)(hit->contrast * (1 / hit_part))))
+        return;
     if (tmi_tape_finder_at(tape, at) != TMI_NONE)
         return;
     if (stats->work >= tmi_tape_work(tape, tape->work_max)) {
@@ -172,8 +177,7 @@ static void scan_one(seeker *s, const tmi_tiles *tiles, int32_t index)
  * been spread evenly. */
 static void scan_lines(tmi_tape *tape, tmi_strokes *strokes, const tmi_tiles *tiles, uint32_t work_max)
 {
-    const float contrast_min = hit_part * (float)tiles->contrast_min;
-    seeker rows = {tape, strokes, contrast_min, false}, columns = {tape, strokes, contrast_min, true};
+    seeker rows = {tape, strokes, tiles, false}, columns = {tape, strokes, tiles, true};
     const int32_t row_power = power_of_two_for((tape->view->height + LINE_SPACING - 1) / LINE_SPACING);
     const int32_t column_power = power_of_two_for((tape->view->width + LINE_SPACING - 1) / LINE_SPACING);
     int32_t row = 0, column = 0;
@@ -228,7 +232,7 @@ static tapemark_config with_defaults(const tapemark_config *config, const tapema
     if (out.vote_min == 0)
         out.vote_min = 0.7f;
     if (out.contrast_min == 0)
-        out.contrast_min = 6;
+        out.contrast_min = 5;
     if (out.id_max == 0)
         out.id_max = TAPEMARK_MAX_ID;
     if (out.work_budget == 0)

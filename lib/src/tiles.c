@@ -83,24 +83,32 @@ static void tile_row_extremes(const tmi_view *view, int32_t tile_y, uint8_t *low
  * as contrast does, and it is everywhere. */
 enum { BAR_PERCENT = 8 };
 
-/* The contrast from which tiles are scanned: contrast_min at least, and what leaves about
- * `active_max` of them. */
-static uint8_t contrast_bar(tmi_tiles *tiles, uint8_t contrast_min, uint32_t active_max, bool *raised)
+static void usual_bar(tmi_tiles *tiles, uint8_t contrast_min)
 {
-    uint32_t histogram[256] = {0};
+    int most = 0, lightest = 1;
     for (int32_t y = 0; y < tiles->rows; y++)
-        for (int32_t x = 0; x < tiles->columns; x++) {
-            const ptrdiff_t i = y * tiles->pitch + x;
-            histogram[tiles->high[i] - tiles->low[i]]++;
+        for (ptrdiff_t i = y * tiles->pitch; i < y * tiles->pitch + tiles->columns; i++) {
+            most = tiles->high[i] - tiles->low[i] > most ? tiles->high[i] - tiles->low[i] : most;
+            lightest = tiles->high[i] > lightest ? tiles->high[i] : lightest;
         }
-    int most = 255;
-    while (most > 0 && !histogram[most])
-        most--;
-    const int least = most * BAR_PERCENT / 100 > contrast_min ? most * BAR_PERCENT / 100 : contrast_min;
-    tiles->contrast_min = (uint8_t)least;
-    uint32_t above = 0;
+    const int bar = most * BAR_PERCENT / 100;
+    tiles->contrast_min = contrast_min;
+    tiles->bar = (uint8_t)(bar > contrast_min ? bar : contrast_min);
+    tiles->lightest = (uint8_t)lightest;
+}
+
+/* The contrast from which tiles are scanned where the usual bar leaves many more than `active_max`; 0 where not. */
+static int raised_bar(const tmi_tiles *tiles, uint32_t active_max)
+{
+    uint32_t histogram[256] = {0}, above = 0;
+    for (int32_t y = 0; y < tiles->rows; y++)
+        for (ptrdiff_t i = y * tiles->pitch; i < y * tiles->pitch + tiles->columns; i++) {
+            const int contrast = tiles->high[i] - tiles->low[i];
+            if (tmi_is_contrast(tiles, i, contrast))
+                histogram[contrast]++;
+        }
     int bar = 256;
-    while (bar > least) {
+    while (bar > 0) {
         const uint32_t next = histogram[bar - 1];
         /* Tiles of equal contrast go in together or not at all; without them there may be next to nothing. */
         if (above + next > active_max && above > active_max / 2)
@@ -108,8 +116,7 @@ static uint8_t contrast_bar(tmi_tiles *tiles, uint8_t contrast_min, uint32_t act
         above += next;
         bar--;
     }
-    *raised = bar > least;
-    return (uint8_t)(bar < 255 ? bar : 255);
+    return bar;
 }
 
 /* An edge has to change by a part of what light and dark differ by around it: enough to pass over noise and
@@ -153,13 +160,14 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
     for (int32_t y = 0; y < tiles->rows; y++)
         tile_row_extremes(view, y, tiles->low + y * tiles->pitch, tiles->high + y * tiles->pitch);
 
-    bool raised;
-    const uint8_t bar = contrast_bar(tiles, contrast_min, active_max, &raised);
+    usual_bar(tiles, contrast_min);
+    const int raised = raised_bar(tiles, active_max);
     tiles->active = 0;
     for (int32_t y = 0; y < tiles->rows; y++) {
         const uint8_t *low = tiles->low + y * tiles->pitch, *high = tiles->high + y * tiles->pitch;
         for (int32_t x = 0; x < tiles->columns; x++) {
-            if (high[x] - low[x] < bar)
+            const int contrast = high[x] - low[x];
+            if (contrast < raised || !tmi_is_contrast(tiles, y * tiles->pitch + x, contrast))
                 continue;
             tiles->swing[y * tiles->pitch + x] = edge_swing(low + x, high + x, tiles->pitch);
             tiles->active++;
@@ -167,5 +175,5 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
             tiles->column_bits[x * tiles->column_words + y / 32] |= 1u << (y % 32);
         }
     }
-    return raised;
+    return raised > 0;
 }

@@ -18,8 +18,21 @@ typedef struct tmi_tiles {
     ptrdiff_t pitch; /* from one row of tiles to the next */
     int32_t row_words, column_words;
     uint32_t active;      /* tiles with a swing */
-    uint8_t contrast_min; /* the least that a tile must have for one, whether or not that bar was raised */
+    uint8_t bar;          /* contrast that a tile must have for one, */
+    uint8_t contrast_min; /* and one in deep shade */
+    uint8_t lightest;     /* of all pixels */
 } tmi_tiles;
+
+/* What is darker than this part of the lightest pixel lies in deep shade. */
+enum { SHADE_PARTS = 8 };
+
+/* Whether that is contrast at a tile's place in the planes. In deep shade the bar, a part of the contrast in the light,
+ * would leave out all there is; and noise, which grows with the light, is least there. */
+static inline bool tmi_is_contrast(const tmi_tiles *tiles, ptrdiff_t i, int contrast)
+{
+    const bool shaded = SHADE_PARTS * tiles->high[i] < tiles->lightest;
+    return contrast >= (shaded ? tiles->contrast_min : tiles->bar);
+}
 
 /* Lays everything out in `memory`, which is aligned for uint32_t and as large as TAPEMARK_WORKSPACE_BYTES has it
  * beyond the fixed part, and fills it. About `active_max` tiles stay active: where more have enough contrast, the bar

@@ -59,6 +59,18 @@ static void reads_across_the_edge_of_a_shadow(void **state)
         }
 }
 
+/* A tape in deep shade, of a few gray levels in all, beside sunlit wall. */
+static void reads_in_deep_shade_beside_the_light(void **state)
+{
+    (void)state;
+    one_tape all = usual_view();
+    all.view.light = (scene_light){.shadow_depth = 0.96, .shadow_deg = 90, .shadow_offset_px = -150,
+                                   .shadow_soft_px = 6};
+    const decoding *got = decode_tape(&all, NULL, "deep shade");
+    assert_nothing_wrong(got, &all.view);
+    assert_true(count_read(got) >= 5);
+}
+
 static void reads_through_jpeg(void **state)
 {
     (void)state;
@@ -147,6 +159,7 @@ int main(void)
         cmocka_unit_test(reads_an_over_exposed_frame),
         cmocka_unit_test(reads_under_a_gradient),
         cmocka_unit_test(reads_across_the_edge_of_a_shadow),
+        cmocka_unit_test(reads_in_deep_shade_beside_the_light),
         cmocka_unit_test(reads_through_jpeg),
         cmocka_unit_test(heavy_jpeg_makes_up_nothing),
         cmocka_unit_test(reads_in_noise),
