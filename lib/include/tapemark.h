@@ -181,9 +181,12 @@ typedef struct tapemark_cm {
     int16_t slot;               /* its place in that TM as read, from 0; -1 without a TM */
 } tapemark_cm;
 
+/* A code has no checksum: where none of its CMs could be read, another plan's tape may show it, or, rarely, one with
+ * something before a CM. */
 typedef struct tapemark_tm {
     char code[TAPEMARK_TM_MAX_CMS + 1];  /* '1' for a light CM, '0' for a dark one, NUL at the end */
     uint8_t length;                      /* number of CMs, 3 to TAPEMARK_TM_MAX_CMS */
+    uint8_t unknown_cms;                 /* CMs in it that were read as ids that are not to be: another plan's tape? */
     bool directed;                       /* false: it may as well read backwards; corners follow the code */
     float vote;                          /* share of the scan lines that agree with the code, 0 to 1 */
     float confidence;                    /* 0 to 1 */
@@ -337,11 +340,11 @@ tapemark_status tapemark_map_find_tm(const tapemark_map *map, const char *code, 
 /* What the map says to a TM and the CMs that were read in it. */
 typedef enum tapemark_agreement {
     TAPEMARK_AGREES,            /* the CMs are those that the map has in these places of this TM */
-    TAPEMARK_CODE_ALONE,        /* no CM was read in it; one TM of the map has its code */
+    TAPEMARK_CODE_ALONE,        /* no CM could be read in it; one TM of the map has its code */
     TAPEMARK_CODE_AMBIGUOUS,    /* no CM was read in it; several TMs of the map have its code */
     TAPEMARK_CODE_UNKNOWN,      /* no CM was read in it; no TM of the map has its code */
     TAPEMARK_CODE_OF_OTHER_TM,  /* the map has another code for the TM of its CMs */
-    TAPEMARK_CM_UNKNOWN,        /* a CM in it is not on the map */
+    TAPEMARK_CM_UNKNOWN,        /* a CM in it is not on the map, or the TM has unknown_cms */
     TAPEMARK_CM_WITHOUT_TM,     /* a CM in it stands alone on the map */
     TAPEMARK_CMS_OF_SEVERAL_TMS,
     TAPEMARK_CM_IN_OTHER_SLOT,

@@ -182,12 +182,14 @@ static bool belongs(const tapemark_cm *cm, size_t tm_index)
     return cm->tm >= 0 && (size_t)cm->tm == tm_index;
 }
 
-/* The TM of the map that all CMs read in this one belong to: TAPEMARK_AGREES; TAPEMARK_CODE_ALONE when none was
- * read. */
+/* The TM of the map that all CMs read in this one belong to: TAPEMARK_AGREES; TAPEMARK_CODE_ALONE when none could be
+ * read. Codes are few, and each plan has the same ones: where CMs of other ids stand in it, the code says nothing. */
 static tapemark_agreement tm_of_cms(const tapemark_map *map, const tapemark_result *result, size_t tm_index,
                                     int32_t *tm)
 {
     *tm = -1;
+    if (result->tms[tm_index].unknown_cms > 0)
+        return TAPEMARK_CM_UNKNOWN;
     for (size_t i = 0; i < result->cm_count; i++) {
         size_t index;
         if (!belongs(&result->cms[i], tm_index))

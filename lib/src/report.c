@@ -138,6 +138,14 @@ static float vouched(const tapemark_reject *reasons, int first, int count)
     return read > 0 ? 0.5f + 0.5f * (float)read / (float)count : 1;
 }
 
+static uint8_t count_unknown(const tapemark_reject *reasons, int first, int count)
+{
+    uint8_t unknown = 0;
+    for (int cm = first; cm < first + count; cm++)
+        unknown = (uint8_t)(unknown + (reasons[cm] == TAPEMARK_REJECT_UNKNOWN_ID));
+    return unknown;
+}
+
 void tmi_tm_corners(const tmi_segment *segment, int first, int count, bool turned, tapemark_point corners[4])
 {
     const float ink = 3.5f + TAPEMARK_BAR_MODULES;
@@ -164,7 +172,8 @@ int tmi_report_tm(const tmi_reader *reader, const tmi_segment *segment, const ta
             result->stats.limits |= TAPEMARK_LIMIT_TMS;
         return TMI_NONE;
     }
-    tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0, .vote = reading->vote};
+    tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0, .vote = reading->vote,
+                       .unknown_cms = count_unknown(reasons, first, count)};
     tmi_tm_corners(segment, first, count, turned, out.corners);
     out.confidence = reading->vote * real_min(1, reading->bars * (1 / clean_bars)) * vouched(reasons, first, count);
     for (int i = 0; i < count; i++)

@@ -105,6 +105,7 @@ static void locate(byte_script *script, const tapemark_map *map)
     read_code(script, tms->code, TAPEMARK_TM_MAX_CMS);
     tms->length = (uint8_t)strlen(tms->code);
     tms->directed = script_byte(script) % 2;
+    tms->unknown_cms = (uint8_t)(script_byte(script) % 8 / 7);
     for (size_t i = 0; i < result.cm_count; i++)
         cms[i] = (tapemark_cm){.id = script_within(script, -31, 41), .tm = (int16_t)(script_byte(script) % 8 / 7),
                                .slot = (int16_t)(script_byte(script) % 16)};

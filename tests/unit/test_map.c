@@ -308,6 +308,19 @@ static void tm_without_cms_is_located_by_its_code(void **state)
     expect_place(locate("0001", true, NONE_READ), TAPEMARK_CODE_UNKNOWN, -1, false);
 }
 
+static void tm_with_unknown_cms_has_no_place(void **state)
+{
+    (void)state;
+    tapemark_cm own = {.id = 1, .tm = 0, .slot = 0};
+    tapemark_tm tm = {.code = "100", .length = 3, .directed = true, .unknown_cms = 1};
+    tapemark_result result = {.cms = &own, .cm_count = 1, .tms = &tm, .tm_count = 1};
+    for (; result.cm_count <= 1; result.cm_count--) {
+        tapemark_tm_place place;
+        assert_int_equal(tapemark_map_locate_tm(&small, &result, 0, &place), TAPEMARK_NOTHING_FOUND);
+        expect_place(place, TAPEMARK_CM_UNKNOWN, -1, false);
+    }
+}
+
 static void tm_agrees_with_its_cms(void **state)
 {
     (void)state;
@@ -390,6 +403,7 @@ int main(void)
         cmocka_unit_test(flaws_of_cms_are_found),
         cmocka_unit_test(flaws_of_tms_are_found),
         cmocka_unit_test(tm_without_cms_is_located_by_its_code),
+        cmocka_unit_test(tm_with_unknown_cms_has_no_place),
         cmocka_unit_test(tm_agrees_with_its_cms),
         cmocka_unit_test(tm_and_cms_that_contradict_each_other),
         cmocka_unit_test(a_tm_that_is_not_there_is_none),
