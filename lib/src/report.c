@@ -120,30 +120,20 @@ static bool agrees(const tmi_segment *segment, const tapemark_reject *reasons, i
     return ((code ^ light) & known) == 0;
 }
 
-static bool any_believed(const tapemark_reject *reasons, int first, int count)
+TMI_ONCE static int count_of(tapemark_reject reason, const tapemark_reject *reasons, int first, int count)
 {
+    int found = 0;
     for (int cm = first; cm < first + count; cm++)
-        if (reasons[cm] == TMI_BELIEVED)
-            return true;
-    return false;
+        found += reasons[cm] == reason;
+    return found;
 }
 
 /* How sure the CMs make a TM: where some were read and others not, something may lie on those. Where none can be
  * read, the TM is seen from afar, and they say nothing. */
 static float vouched(const tapemark_reject *reasons, int first, int count)
 {
-    int read = 0;
-    for (int cm = first; cm < first + count; cm++)
-        read += reasons[cm] == TMI_BELIEVED;
+    const int read = count_of(TMI_BELIEVED, reasons, first, count);
     return read > 0 ? 0.5f + 0.5f * (float)read / (float)count : 1;
-}
-
-static uint8_t count_unknown(const tapemark_reject *reasons, int first, int count)
-{
-    uint8_t unknown = 0;
-    for (int cm = first; cm < first + count; cm++)
-        unknown = (uint8_t)(unknown + (reasons[cm] == TAPEMARK_REJECT_UNKNOWN_ID));
-    return unknown;
 }
 
 void tmi_tm_corners(const tmi_segment *segment, int first, int count, bool turned, tapemark_point corners[4])
@@ -163,7 +153,7 @@ int tmi_report_tm(const tmi_reader *reader, const tmi_segment *segment, const ta
         return TMI_NONE;
     }
     if (!agrees(segment, reasons, first, count, turned, reading->code) ||
-        (!any_believed(reasons, first, count) && tmi_is_mirrored(reader, segment, first, count))) {
+        (!count_of(TMI_BELIEVED, reasons, first, count) && tmi_is_mirrored(reader, segment, first, count))) {
         result->stats.rejects[TAPEMARK_REJECT_CONFLICT]++;
         return TMI_NONE;
     }
@@ -173,7 +163,7 @@ int tmi_report_tm(const tmi_reader *reader, const tmi_segment *segment, const ta
         return TMI_NONE;
     }
     tapemark_tm out = {.length = (uint8_t)count, .directed = turn != 0, .vote = reading->vote,
-                       .unknown_cms = count_unknown(reasons, first, count)};
+                       .unknown_cms = (uint8_t)count_of(TAPEMARK_REJECT_UNKNOWN_ID, reasons, first, count)};
     tmi_tm_corners(segment, first, count, turned, out.corners);
     out.confidence = reading->vote * real_min(1, reading->bars * (1 / clean_bars)) * vouched(reasons, first, count);
     for (int i = 0; i < count; i++)

@@ -85,16 +85,16 @@ enum { BAR_PERCENT = 8 };
 
 static void usual_bar(tmi_tiles *tiles, uint8_t contrast_min)
 {
-    int most = 0, lightest = 1;
+    uint8_t most = 0, lightest = 1;
     for (int32_t y = 0; y < tiles->rows; y++)
         for (ptrdiff_t i = y * tiles->pitch; i < y * tiles->pitch + tiles->columns; i++) {
-            most = tiles->high[i] - tiles->low[i] > most ? tiles->high[i] - tiles->low[i] : most;
-            lightest = tiles->high[i] > lightest ? tiles->high[i] : lightest;
+            most = greater(most, (uint8_t)(tiles->high[i] - tiles->low[i]));
+            lightest = greater(lightest, tiles->high[i]);
         }
     const int bar = most * BAR_PERCENT / 100;
     tiles->contrast_min = contrast_min;
     tiles->bar = (uint8_t)(bar > contrast_min ? bar : contrast_min);
-    tiles->lightest = (uint8_t)lightest;
+    tiles->lightest = lightest;
 }
 
 /* The contrast from which tiles are scanned where the usual bar leaves many more than `active_max`; 0 where not. */

@@ -52,11 +52,9 @@ otherwise() {
 otherwise other_code -e 's/"100"/"1000"/'
 otherwise cm_without_tm -e 's/"100"/" "/; s/"n_tm":"1"/"n_tm":" "/'
 otherwise other_slot -e 's/:-13,/:-99,/; s/:-14,/:-13,/; s/:-99,/:-14,/'
-otherwise unknown_code -e 's/:12,/:112,/; s/:-13,/:-113,/; s/:-14,/:-114,/; s/"100"/"1000"/'
+otherwise unknown_cm -e 's/:12,/:112,/; s/:-13,/:-113,/; s/:-14,/:-114,/'
+otherwise unknown_cm -e 's/:-13,/:-113,/'
 otherwise backwards -e 's/:12,/:99,/; s/:-14,/:12,/; s/:99,/:-14,/; s/"100"/"001"/'
-sed -e 's/:12,/:112,/; s/:-13,/:-113,/; s/:-14,/:-114,/' paper.json >otherwise.json
-run 0 --map otherwise.json tm.pgm
-expect out ',"x":0.5200,"y":0.0200,"direction_deg":0.00,"agrees":null,"reason":"no_cms"}'
 
 # ---- Maps that are refused ------------------------------------------------------------------------------------
 
