@@ -42,7 +42,8 @@ static int remove_folder(void **state)
 {
     (void)state;
     DIR *here = opendir(folder);
-    for (struct dirent *entry; here != NULL && (entry = readdir(here)) != NULL;)
+    assert_non_null(here);
+    for (struct dirent *entry; (entry = readdir(here)) != NULL;)
         unlink(entry->d_name);
     closedir(here);
     return rmdir(folder);
