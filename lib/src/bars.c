@@ -25,8 +25,9 @@ static bool is_unresolved(tmi_bars_place place)
 }
 
 /* Bars too fine to be resolved: half as dark as dark modules, then light. Coding regions are either much darker or
- * much lighter than that, and what is left of one beside something that covers the rest is darker at one end. */
-static const float uneven_max = 0.55f;
+ * much lighter than that, what is left of one beside something that covers the rest is darker at one end, and behind
+ * something gray that covers all of it there is no light. */
+static const float uneven_max = 0.55f, lighter_min = 0.25f;
 
 static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
 {
@@ -37,7 +38,8 @@ static float gray_bars(const float value[BAR_SAMPLES], const tmi_finder *finder)
     const float scale = 1 / real_max(1, finder->light - finder->dark);
     const float gray = (finder->light - bars) * scale;
     const float quiet = (finder->light - 0.5f * (value[BAR_SAMPLES - 2] + value[BAR_SAMPLES - 1])) * scale;
-    return quiet < 0.4f && real_abs(uneven) * scale < uneven_max ? 1 - 3 * real_abs(gray - 0.55f) : 0;
+    const bool may_be = quiet < 0.4f && gray - quiet > lighter_min && real_abs(uneven) * scale < uneven_max;
+    return may_be ? 1 - 3 * real_abs(gray - 0.55f) : 0;
 }
 
 static float bars_on_line(const tmi_view *view, tmi_bars_place place, float stretch, float v, uint32_t *reads)

@@ -72,11 +72,32 @@ static void a_covered_far_cm_is_no_other_cm(void **state)
     assert_true(read_tapes(0.65, 0.95, 60, 2) > 45);
 }
 
+/* From afar bars are gray, and light behind; what is gray all along between two finder patterns ends no TM. */
+static void something_gray_on_a_cm_is_no_bars(void **state)
+{
+    (void)state;
+    static const int32_t ids[CMS_MAX] = {696, -697, -698, -699, -700, -701};
+    for (int i = 0; i < 160; i++) {
+        const double px = 1.1 + 0.08 * (i % 5), yaw_deg = 4 * (i / 5 % 8) - 14;
+        one_tape all = place_tape(scene_default(WIDTH, HEIGHT), ids, CMS_MAX, true,
+                                  (scene_pose){.px_per_module = px, .roll_deg = 2, .yaw_deg = yaw_deg});
+        const scene_cover cover = {.x_px = 0.5 * WIDTH + 12.5 * px, .y_px = 0.5 * HEIGHT, .angle_deg = 2,
+                                   .width_px = (i % 3 == 0 ? 15 : 18) * px, .height_px = 12 * px,
+                                   .shade = 118 + 3 * (i / 40)};
+        all.view.covers = &cover;
+        all.view.cover_count = 1;
+        char name[64];
+        snprintf(name, sizeof name, "%.2f px a module, yaw %.0f, shade %.0f", px, yaw_deg, cover.shade);
+        assert_nothing_wrong(decode_tape(&all, NULL, name), &all.view);
+    }
+}
+
 int main(void)
 {
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_covered_cm_is_no_other_cm),
         cmocka_unit_test(a_covered_far_cm_is_no_other_cm),
+        cmocka_unit_test(something_gray_on_a_cm_is_no_bars),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
