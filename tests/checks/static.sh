@@ -2,8 +2,9 @@
 # Usage: static.sh BUILD_DIR [deep]
 # clang-tidy, clang's analyzer and cppcheck over all C that was configured in BUILD_DIR. What they look at and what
 # not stands with its reasons in .clang-tidy, tests/.clang-tidy and cppcheck.suppressions. The analyzer follows the
-# library alone, and each function not for long; with "deep" everything, for as long as it takes: a quarter of an
-# hour.
+# library alone, and each function not for long; with "deep" everything, for as long as it takes: half an hour of
+# processor time. What "deep" then finds outside of the library, some twenty places, are ways through a function that
+# no call takes: to be looked at one by one.
 set -eu
 build=$(cd "$1" && pwd)
 deep=${2:-}
