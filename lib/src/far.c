@@ -5,15 +5,13 @@
 
 enum { PITCH = TAPEMARK_CM_PITCH_MODULES };
 
-/* A row has to explain this share of the waveform. */
-static const float explained_min = 0.85f;
+/* A TM has to explain this share of the waveform, or to leave less than this unexplained. Whole, however its ids
+ * differ from what CMs show on average, it does. */
+static const float tm_explained_min = 0.86f, tm_misfit_max = 0.085f;
 
-/* A TM this share: with a piece of wall beyond its end taken for one more CM, it explains up to 0.9; whole, from 0.95
- * on. */
-static const float tm_explained_min = 0.92f;
-
-/* Bars have to fit by this much; 1 is perfect. A light CM does by 0.1. */
-static const float bars_min = 0.25f;
+/* Bars have to fit by this much; 1 is perfect. A light CM does by 0.1. Where those of one end are hardly any, and
+ * leave that many times as much unexplained as those of the other end do, they are something else. */
+static const float bars_min = 0.25f, doubtful_bars = 0.5f, uneven_bars = 1.9f;
 
 /* From this size on rings can be seen; below, a row has to explain more. */
 static const float rings_px = 0.66f, unresolved_min = 0.93f;
@@ -22,7 +20,7 @@ static const float rings_px = 0.66f, unresolved_min = 0.93f;
 static const float blocks_px = 0.55f;
 
 /* Modules that words need to be told from each other, whatever they show, px. */
-static const float words_px = 0.95f;
+static const float words_px = 0.93f;
 
 /* How much clearer one way up must be than the other; and how much the light CMs of a TM make it. Blocks between
  * bars, light throughout or dark throughout, come to 0.1, tapes to 0.43 at least, however blurred. */
@@ -39,7 +37,8 @@ static float dark_at(const tmi_reader *reader, const tmi_far *far, const tmi_row
 }
 
 /* Mean share of dark in `count` columns from u on. */
-static float dark_along(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, float u, int count, float v)
+TMI_ONCE static float dark_along(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, float u, int count,
+                                 float v)
 {
     float sum = 0;
     for (int i = 0; i < count; i++)
@@ -47,7 +46,8 @@ static float dark_along(const tmi_reader *reader, const tmi_far *far, const tmi_
     return sum / (float)count;
 }
 
-static bool bars_on_line(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, bool right, float v)
+TMI_ONCE static bool bars_on_line(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, bool right,
+                                  float v)
 {
     const float end =
         right ? (float)(PITCH * (row->first + row->cm_count)) + 4.5f : (float)(PITCH * row->first) - 11.5f;
@@ -84,7 +84,7 @@ static void read_lines(const tmi_reader *reader, const tmi_far *far, const tmi_r
 }
 
 /* How much darker than its top row the bottom row of CM k is, as the row runs. */
-static float foot_of(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k)
+TMI_ONCE static float foot_of(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k)
 {
     const float u = (float)(PITCH * (row->first + k)) + 6;
     return dark_along(reader, far, row, u, 14, 3) - dark_along(reader, far, row, u, 14, -3);
@@ -110,11 +110,13 @@ static float turn_of(const tmi_reader *reader, const tmi_far *far, const tmi_row
 
 /* Blocks of CMs, however blurred, fit their print by this much, but for one in a few hundred; dark ones are this dark
  * in the middle, and no darker beside the tape than the finders next to them are; and light ones are darker at their
- * bottom by this. Something that lies on them mostly is at odds with one of these. */
-static const float block_misfit_max = 0.085f, ink_min = 0.88f, beside_max = 0.2f, foot_min = 0.15f;
+ * bottom than at their top by this, dark ones by no more. Something that lies on them mostly is at odds with one of
+ * these. */
+static const float block_misfit_max = 0.085f, ink_min = 0.88f, beside_max = 0.2f, foot_min = 0.16f,
+                   dark_foot_max = 0.33f;
 
 /* How much darker it is beside CM k, v modules from the row's middle, than beside its finders. */
-static float dark_beside(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k, float v)
+TMI_ONCE static float dark_beside(const tmi_reader *reader, const tmi_far *far, const tmi_row *row, int k, float v)
 {
     const float u = (float)(PITCH * (row->first + k));
     return dark_along(reader, far, row, u + 6, 14, v) -
@@ -130,6 +132,7 @@ static bool is_hidden(const tmi_reader *reader, const tmi_far *far, const tmi_ro
     if (!(row->dark >> k & 1))
         return foot_of(reader, far, row, k) * (turn < 0 ? -1.0f : 1.0f) < foot_min;
     return dark_along(reader, far, row, (float)(PITCH * (row->first + k)) + 6, 14, 0) < ink_min ||
+           real_abs(foot_of(reader, far, row, k)) > dark_foot_max ||
            dark_beside(reader, far, row, k, beside) > beside_max ||
            dark_beside(reader, far, row, k, -beside) > beside_max;
 }
@@ -173,18 +176,24 @@ static bool is_tape(const tmi_reader *reader, const tmi_far *far, const tmi_row 
     return least_px < rings_px || rings.strength > 0.2f;
 }
 
+static bool has_bars(const tmi_row *row)
+{
+    const float worse = real_min(row->bars[0], row->bars[1]), better = real_max(row->bars[0], row->bars[1]);
+    return worse > bars_min && (worse > doubtful_bars || 1 - worse < uneven_bars * (1 - better));
+}
+
 /* Whether it explains the wave to both ends, has bars there, and blocks between that are those of CMs. */
 static bool may_be_tm(const tmi_row *row, float turn)
 {
-    return row->explained > tm_explained_min && row->cm_count >= TAPEMARK_TM_MIN_CMS && row->bars[0] > bars_min &&
-           row->bars[1] > bars_min &&
+    return (row->explained > tm_explained_min || row->misfit < tm_misfit_max) &&
+           row->cm_count >= TAPEMARK_TM_MIN_CMS && has_bars(row) &&
            (row->dark == UINT32_MAX >> (32 - row->cm_count) || real_abs(turn) > tm_turn_min);
 }
 
 static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
 {
     const float least_px = real_min(row->module, far->wave.stripe.height * (1.0f / TAPEMARK_HEIGHT_MODULES));
-    if (least_px < blocks_px || !is_tape(reader, far, row, least_px))
+    if (row->module < blocks_px || !is_tape(reader, far, row, least_px))
         return;
     const float turn = turn_of(reader, far, row);
     bool is_tm = may_be_tm(row, turn);
@@ -203,7 +212,7 @@ static void read_row(const tmi_reader *reader, tmi_far *far, const tmi_row *row)
 
 /* ---- Stripes ------------------------------------------------------------------------------------------------- */
 
-static bool holds(const tapemark_point corners[4], tmi_point at)
+TMI_ONCE static bool holds(const tapemark_point corners[4], tmi_point at)
 {
     for (int i = 0; i < 4; i++) {
         const tapemark_point a = corners[i], b = corners[(i + 1) & 3];
@@ -230,7 +239,7 @@ static bool settles(bool is_tm, float marker_height, float height)
 }
 
 /* Whether what was read at this place leaves nothing to be found by a stripe of this height. */
-static bool is_read(const tapemark_result *result, tmi_point at, float height)
+TMI_ONCE static bool is_read(const tapemark_result *result, tmi_point at, float height)
 {
     for (size_t i = 0; i < result->cm_count; i++)
         if (holds(result->cms[i].corners, at) && settles(false, height_of(result->cms[i].corners), height))
@@ -309,23 +318,54 @@ static void sample_all(const tmi_reader *reader, tmi_far *far, const tmi_stripe 
                     &reader->result->stats.work);
 }
 
-/* Heights within which a row is believed, px: somewhat more than what strokes are noted for. */
-static const float height_min_px = 2, height_max_px = 16;
+/* Heights within which a row is believed, px: somewhat more than what strokes are noted for; and how little they
+ * change, in parts, once they are found. */
+static const float height_min_px = 2, height_max_px = 16, height_change_max = 0.03f;
 
-/* Fits row and stripe to each other in turn. */
+/* What a row has to explain before stripe and row have been fitted to each other once, then twice, and then. Blocks
+ * that are all light, or all dark, leave little to explain: it is as well when what is left of it is little. */
+enum { ROUGH_PASSES = 2 };
+static const float explained_by_pass[ROUGH_PASSES + 1] = {0.7f, 0.78f, 0.85f},
+                                                    misfit_by_pass[ROUGH_PASSES + 1] = {0.12f, 0.1f, 0.095f};
+
+static bool fits_well(const tmi_row *row, int pass)
+{
+    const int i = pass < ROUGH_PASSES ? pass : ROUGH_PASSES;
+    return row->explained > explained_by_pass[i] || row->misfit < misfit_by_pass[i];
+}
+
+/* A stripe that is too high or too low may make the wrong way up fit better, at first. */
+TMI_ONCE static bool fit_row(tmi_far *far, tmi_row *row, int pass, uint32_t *work)
+{
+    tmi_row turned = *row;
+    const bool fits = tmi_wave_fit_row(&far->wave, row, work);
+    if (pass >= ROUGH_PASSES)
+        return fits;
+    turned.turned = !turned.turned;
+    const bool turned_fits = tmi_wave_fit_row(&far->wave, &turned, work);
+    if (turned_fits && (!fits || (turned.cm_count == row->cm_count && turned.explained > row->explained)))
+        *row = turned;
+    return fits || turned_fits;
+}
+
+/* Fits row and stripe to each other in turn, until neither changes. */
 static bool settle(const tmi_reader *reader, tmi_far *far, tmi_stripe *stripe, tmi_row *row)
 {
     uint32_t *work = &reader->result->stats.work;
     int cm_count = 0;
+    float height = 0;
     for (int pass = 0; pass < 8; pass++) {
+        if (!tmi_may_go_on(reader))
+            return false;
         sample_all(reader, far, stripe);
-        if (!tmi_wave_fit_row(&far->wave, row, work))
+        if (!fit_row(far, row, pass, work) || !fits_well(row, pass))
             return false;
-        if (row->explained < (pass == 0 ? 0.75f : explained_min))
-            return false;
-        if (pass > 1 && row->cm_count == cm_count)
+        if (pass >= ROUGH_PASSES && row->cm_count == cm_count &&
+            real_abs(stripe->height - height) < height_change_max * height)
             return true;
         cm_count = row->cm_count;
+        height = stripe->height;
+        tmi_wave_fit_blur(&far->wave, row, work);
         if (!tmi_wave_fit_across(reader->view, &far->wave, row, stripe, work) || stripe->height < height_min_px ||
             stripe->height > height_max_px)
             return false;

@@ -5,7 +5,11 @@
 #include "view.h"
 
 /* Functions that compilers would copy to where they are called, at a cost in code that no speed is worth. */
+#ifdef __clang__
 #define TMI_ONCE __attribute__((noinline))
+#else
+#define TMI_ONCE __attribute__((noinline, noclone))
+#endif
 
 static inline float real_sqrt(float x)
 {

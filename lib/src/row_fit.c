@@ -36,9 +36,8 @@ static tmi_row_print print_of(const tmi_wave *wave, const tmi_row *row)
                            .turned = row->turned};
 }
 
-/* Levels of light and dark by regression over the modules from..to; returns the share of variance explained. */
-static float fit_levels(const tmi_wave *wave, const tmi_row *row, const tmi_row_print *print, float from, float to,
-                        float *light, float *depth)
+/* Levels of light and dark by regression over the modules from..to, and what they leave unexplained. */
+TMI_ONCE static void fit_levels(const tmi_wave *wave, tmi_row *row, const tmi_row_print *print, float from, float to)
 {
     const int first = sample_at(wave, tmi_row_px(row, from)), last = sample_at(wave, tmi_row_px(row, to));
     const float zero = sample_gray(wave, first);
@@ -55,9 +54,10 @@ static float fit_levels(const tmi_wave *wave, const tmi_row *row, const tmi_row_
     float gain;
     const float share = tmi_explained(&fit, &gain);
     const float variance = fit.yy - fit.y * fit.y / fit.n;
-    *depth = -gain;
-    *light = zero + (fit.y - gain * fit.x) / fit.n;
-    return variance > 0 ? share / variance : 0;
+    row->depth = -gain;
+    row->light = zero + (fit.y - gain * fit.x) / fit.n;
+    row->explained = variance > 0 ? share / variance : 0;
+    row->misfit = gain < 0 ? real_sqrt(real_max(0, variance - share) / fit.n) / -gain : 1;
 }
 
 /* Beyond these there is no tape that could be read. */
@@ -95,7 +95,8 @@ static bool fit_step(const tmi_wave *wave, tmi_row *row, const tmi_row_print *pr
 }
 
 /* How far the wave is from the print over the modules from..to: root mean square, in parts of the depth. */
-static float misfit(const tmi_wave *wave, const tmi_row *row, const tmi_row_print *print, float from, float to)
+TMI_ONCE static float misfit(const tmi_wave *wave, const tmi_row *row, const tmi_row_print *print, float from,
+                             float to)
 {
     const int first = sample_at(wave, tmi_row_px(row, from)), last = sample_at(wave, tmi_row_px(row, to));
     float sum = 0;
@@ -108,7 +109,7 @@ static float misfit(const tmi_wave *wave, const tmi_row *row, const tmi_row_prin
 }
 
 /* Mean gray between the modules from..to. */
-static float mean_gray(const tmi_wave *wave, const tmi_row *row, float from, float to)
+TMI_ONCE static float mean_gray(const tmi_wave *wave, const tmi_row *row, float from, float to)
 {
     const int first = sample_at(wave, tmi_row_px(row, from)), last = sample_at(wave, tmi_row_px(row, to));
     float sum = 0;
@@ -129,19 +130,19 @@ static void find_code(const tmi_wave *wave, tmi_row *row)
     }
 }
 
-/* What fits no better than this after that many steps will not come to fit. */
+/* What fits no better than this after that many steps will not come to fit. Blocks that are all light, or all dark,
+ * leave little to explain. */
 enum { FIT_STEPS = 4 };
-static const float explained_min[FIT_STEPS] = {0.6f, 0.68f, 0.74f, 0.78f};
+static const float explained_min[FIT_STEPS] = {0.5f, 0.58f, 0.66f, 0.72f}, hopeless_misfit = 0.12f;
 
-static bool fit_row(const tmi_wave *wave, tmi_row *row, int steps, uint32_t *work)
+TMI_ONCE static bool fit_row(const tmi_wave *wave, tmi_row *row, int steps, uint32_t *work)
 {
     find_code(wave, row);
     const tmi_row_print print = print_of(wave, row);
     for (int step = 0; step < steps; step++) {
-        row->explained =
-            fit_levels(wave, row, &print, tmi_row_left(row), tmi_row_right(row), &row->light, &row->depth);
+        fit_levels(wave, row, &print, tmi_row_left(row), tmi_row_right(row));
         *work += (uint32_t)(0.5f * (tmi_row_right(row) - tmi_row_left(row)) * row->module / wave->step);
-        if (!(row->depth > 1) || row->explained < explained_min[step] ||
+        if (!(row->depth > 1) || (row->explained < explained_min[step] && row->misfit > hopeless_misfit) ||
             !fit_step(wave, row, &print, tmi_row_left(row), tmi_row_right(row), row->cm_count > 3))
             return false;
     }
@@ -211,7 +212,7 @@ static bool in_wave(const tmi_wave *wave, const tmi_row *row, float u)
 }
 
 /* Goes on by one CM, where there is one that fits better than this. */
-static bool extend(const tmi_wave *wave, tmi_row *row, bool right, float misfit_max, uint32_t *work)
+TMI_ONCE static bool extend(const tmi_wave *wave, tmi_row *row, bool right, float misfit_max, uint32_t *work)
 {
     tmi_row longer = *row;
     longer.cm_count++;
@@ -249,7 +250,7 @@ static bool fit_with_bars(const tmi_wave *wave, tmi_row *row, uint32_t *work)
     print.bars[0] = print.bars[1] = true;
     for (int step = 0; step <= STEPS; step++) {
         const float from = tmi_row_left(row) - beyond, to = tmi_row_right(row) + beyond;
-        row->explained = fit_levels(wave, row, &print, from, to, &row->light, &row->depth);
+        fit_levels(wave, row, &print, from, to);
         *work += (uint32_t)(0.5f * (to - from) * row->module / wave->step);
         if (!(row->depth > 1) || (step < STEPS && !fit_step(wave, row, &print, from, to, true)))
             return false;
@@ -257,15 +258,19 @@ static bool fit_with_bars(const tmi_wave *wave, tmi_row *row, uint32_t *work)
     return true;
 }
 
+/* Blur of a wave, standard deviation: of a good camera's optics, its pixels, and bilinear sampling; px. */
+static const float usual_blur_px = 0.7f;
+
 bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work)
 {
-    tmi_prints_prepare(&wave->prints, row->module);
+    row->blur_px = usual_blur_px;
+    tmi_prints_prepare(&wave->prints, row->module, row->blur_px);
     return row->cm_count <= TAPEMARK_TM_MAX_CMS && fit_row(wave, row, FIT_STEPS, work);
 }
 
 bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work)
 {
-    tmi_prints_prepare(&wave->prints, row->module);
+    tmi_prints_prepare(&wave->prints, row->module, row->blur_px);
     if (!fit_row(wave, row, FIT_STEPS, work))
         return false;
     trim(wave, row);
@@ -280,4 +285,31 @@ bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work)
             row->bars[right] = 1 - bars_misfit(wave, row, right) / bars_misfit_max;
     }
     return true;
+}
+
+/* What a blur has to explain more than the usual one, a px away from it: what CMs show differs from the print by as
+ * much as a little blur does. */
+static const float unusual = 0.03f;
+
+void tmi_wave_fit_blur(tmi_wave *wave, tmi_row *row, uint32_t *work)
+{
+    static const float blurs_px[] = {0.5f, 0.6f, 0.7f, 0.85f, 1.05f};
+    const bool bars = row->bars[0] > 0 && row->bars[1] > 0;
+    const float beyond = bars ? TAPEMARK_BAR_MODULES + 1 : 0;
+    tmi_row_print print = print_of(wave, row);
+    print.bars[0] = print.bars[1] = bars;
+    float most = 0;
+    for (int i = 0; i < 5; i++) {
+        tmi_row tried = *row;
+        const float from = tmi_row_left(row) - beyond, to = tmi_row_right(row) + beyond;
+        tmi_prints_prepare(&wave->prints, row->module, blurs_px[i]);
+        fit_levels(wave, &tried, &print, from, to);
+        *work += (uint32_t)(0.5f * (to - from) * row->module / wave->step);
+        const float worth = tried.explained - unusual * real_abs(blurs_px[i] - usual_blur_px);
+        if (worth > most) {
+            most = worth;
+            row->blur_px = blurs_px[i];
+        }
+    }
+    tmi_prints_prepare(&wave->prints, row->module, row->blur_px);
 }

@@ -15,12 +15,11 @@ static const float dark_dark[BLOCK_COLUMNS] = {1,    .97f, .83f, .97f, .97f, .83
 
 static const float bars_dark[BARS_COLUMNS] = {1, 0, 1, 0, 1, 0, 1};
 
-/* Blur of the wave, standard deviation: of a good camera's optics, its pixels, and bilinear sampling; px. And that of
- * a module's own width, in modules. */
-static const float blur_px = 0.7f, module_blur = 0.289f;
+/* Blur by a module's own width, standard deviation in modules. */
+static const float module_blur = 0.289f;
 
 /* Weights of the blur, for a sum over whole modules: from how far away it reaches. */
-static float blur_reach(float module_px)
+static float blur_reach(float module_px, float blur_px)
 {
     const float sigma = blur_px / module_px;
     return real_min(TMI_BLUR_MAX, 2.6458f * real_sqrt(sigma * sigma + module_blur * module_blur));
@@ -28,7 +27,7 @@ static float blur_reach(float module_px)
 
 /* Blurs the columns of a part of the print, with light around it, into a table of four entries a module that begins
  * TMI_BLUR_MAX modules before its first column's centre. */
-static void blur_part(const float *columns, int count, float reach, float *table)
+TMI_ONCE static void blur_part(const float *columns, int count, float reach, float *table)
 {
     const int entries = TMI_PRINT_ENTRIES(count);
     for (int i = 0; i < entries; i++) {
@@ -44,9 +43,9 @@ static void blur_part(const float *columns, int count, float reach, float *table
     }
 }
 
-void tmi_prints_prepare(tmi_prints *prints, float module_px)
+void tmi_prints_prepare(tmi_prints *prints, float module_px, float blur_px)
 {
-    const float reach = blur_reach(module_px);
+    const float reach = blur_reach(module_px, blur_px);
     if (real_abs(prints->reach - reach) < 0.02f * reach)
         return;
     prints->reach = reach;

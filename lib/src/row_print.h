@@ -26,8 +26,8 @@ typedef struct tmi_blurred {
     float value, slope; /* share of dark, and its change per module */
 } tmi_blurred;
 
-/* Fills the tables in for modules of this size, unless they are. */
-void tmi_prints_prepare(tmi_prints *prints, float module_px);
+/* Fills the tables in for modules of this size and a blur of this standard deviation, unless they are. */
+void tmi_prints_prepare(tmi_prints *prints, float module_px, float blur_px);
 
 /* Share of dark at u. */
 tmi_blurred tmi_row_dark(const tmi_row_print *print, float u);

@@ -97,7 +97,7 @@ static float coarse_gain(const tmi_wave_sums *s, float origin, float pitch, int 
 }
 
 /* Part of the wave's variance that a first look has to explain. */
-static const float coarse_min = 0.37f;
+static const float coarse_min = 0.25f;
 
 /* Over five pitches, half a step makes a module at the ends. */
 static const float pitch_step = 0.95f;
@@ -113,7 +113,8 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
         for (float origin = 0; origin < pitch; origin += hop) {
             int first = 0, count;
             float share = 0;
-            const float gain = coarse_gain(s, origin, pitch, &first, &count, &share);
+            float gain = coarse_gain(s, origin, pitch, &first, &count, &share);
+            gain *= share * share;
             tried += (uint32_t)(count > 0 ? count : 1);
             if (gain <= guess->gain || share < coarse_min)
                 continue;
@@ -129,9 +130,10 @@ static void best_pitch(const tmi_wave *wave, const tmi_wave_sums *s, float least
 /* A tape seen at an angle has narrower modules than its height tells: three octaves' parts. */
 static const float pitch_bounds[TMI_GUESSES + 1] = {1.15f, 0.85f, 0.63f, 0.47f};
 
-/* The wave along a tape rises and falls by more than this part of its strokes' contrast; along a lone line, a gap
- * between boards or a shadow's edge it does not. Standard deviation. */
-static const float swing_min = 0.25f;
+/* The wave along a tape rises and falls by more than this part of its strokes' contrast, be it dark throughout but
+ * for its finder patterns; along a lone line, a gap between boards or a shadow's edge it does not. Standard
+ * deviation. */
+static const float swing_min = 0.2f;
 
 tmi_glance tmi_wave_glance(const tmi_wave *wave)
 {

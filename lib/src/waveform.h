@@ -31,11 +31,13 @@ typedef struct tmi_wave_sums {
  * are at origin + module * u / (1 + bend * u), in px from the stripe's middle. */
 typedef struct tmi_row {
     float origin, module, bend;
+    float blur_px;      /* standard deviation */
     int first, cm_count;
     uint32_t dark;      /* CM k is dark: bit k - first */
     bool turned;        /* it rather stands on the head, as the row runs */
     float light, depth; /* gray level of light modules, and how much darker dark ones are */
     float explained;    /* share of the wave's variance, 0 to 1 */
+    float misfit;       /* root mean square of what it leaves unexplained, in parts of the depth */
     float bars[2];      /* how well bars fit at the left and right end, up to 1 */
 } tmi_row;
 
@@ -93,6 +95,9 @@ bool tmi_wave_fit_guess(tmi_wave *wave, tmi_row *row, uint32_t *work);
 
 /* Fits such a guess, and follows the row to both ends. */
 bool tmi_wave_fit_row(tmi_wave *wave, tmi_row *row, uint32_t *work);
+
+/* Finds out how blurred the row is: the blur by which it explains most. */
+void tmi_wave_fit_blur(tmi_wave *wave, tmi_row *row, uint32_t *work);
 
 /* How far the wave is from the coding region of the row's CM k and the gaps beside it: root mean square, in parts of
  * the depth. */

@@ -14,6 +14,7 @@ typedef struct sweep {
     double defocus_px;
     bool inverted;
     int cm_count;
+    int sign; /* of all ids; 0: random */
 } sweep;
 
 static const sweep plain = {.yaw_deg = 10, .roll_from_deg = -15, .roll_to_deg = 15, .light = 160, .defocus_px = 0.5,
@@ -24,11 +25,13 @@ static double between(random_source *source, double from, double to)
     return from + (to - from) * (double)(random_bits(source) >> 11) / 9007199254740992.0;
 }
 
-/* Ids that ascend, light and dark at random, that do not read the same backwards. */
-static void random_ids(random_source *source, int count, int32_t *ids)
+/* Ids that ascend, all of one sign; or light and dark at random, so that they do not read the same backwards. */
+static void random_ids(random_source *source, int count, int sign, int32_t *ids)
 {
     const int32_t first = 1 + (int32_t)between(source, 0, 900);
-    bool symmetric = true;
+    bool symmetric = sign == 0;
+    for (int i = 0; i < count; i++)
+        ids[i] = sign * (first + i);
     while (symmetric) {
         for (int i = 0; i < count; i++)
             ids[i] = (random_bits(source) >> 40 & 1) != 0 ? first + i : -(first + i);
@@ -62,7 +65,7 @@ static tally read_sweep(const sweep *s, int count)
     for (int i = 0; i < count; i++) {
         random_source source = {(uint64_t)(i + 1)};
         int32_t ids[TAPEMARK_TM_MAX_CMS];
-        random_ids(&source, s->cm_count, ids);
+        random_ids(&source, s->cm_count, s->sign, ids);
         scene view = scene_default(340, 240);
         view.seed = (uint64_t)(i + 1);
         view.background = (scene_background){.kind = s->background, .light = s->light, .dark = 60, .scale_px = 40,
@@ -110,6 +113,33 @@ static void reads_far_tms_of_all_lengths(void **state)
         s.cm_count = counts[i];
         assert_tms(s, 0.8, 10);
     }
+}
+
+/* Whose waveform holds least: finder patterns that are hardly lighter than what is between them. */
+static void reads_far_tms_that_are_dark_throughout(void **state)
+{
+    (void)state;
+    static const double sizes_px[] = {0.9, 0.8, 0.7};
+    for (size_t i = 0; i < COUNT_OF(sizes_px); i++) {
+        sweep s = plain;
+        s.sign = -1;
+        s.px_per_module = sizes_px[i];
+        s.defocus_px = 0.3;
+        const tally sum = read_sweep(&s, 12);
+        if (sum.tms < 11)
+            fail_msg("%g px a module, ids all negative: %d of 12 TMs were read; at least 11 should be", sizes_px[i],
+                     sum.tms);
+    }
+}
+
+static void reads_far_tms_in_sharp_pictures(void **state)
+{
+    (void)state;
+    sweep s = plain;
+    s.defocus_px = 0.1;
+    assert_tms(s, 0.9, 11);
+    assert_tms(s, 0.8, 11);
+    assert_tms(s, 0.7, 9);
 }
 
 static void reads_far_tms_in_all_directions(void **state)
@@ -264,6 +294,8 @@ int main(void)
     static const struct CMUnitTest tests[] = {
         cmocka_unit_test(reads_tms_down_to_0_6_px_a_module),
         cmocka_unit_test(reads_far_tms_of_all_lengths),
+        cmocka_unit_test(reads_far_tms_that_are_dark_throughout),
+        cmocka_unit_test(reads_far_tms_in_sharp_pictures),
         cmocka_unit_test(reads_far_tms_in_all_directions),
         cmocka_unit_test(reads_far_tms_seen_at_an_angle),
         cmocka_unit_test(reads_far_tms_light_on_dark),
