@@ -273,69 +273,149 @@ static void square_from_moments(const moments *m, const outline *out, tmi_point 
 
 /* ---- Fine location ------------------------------------------------------------------------------------ */
 
-/* Over less than this the image of an edge is one slope. */
-static const float fine_px = 2.5f;
+/* Over less than this, in steps of the interpolation, the image of an edge is one slope. */
+enum { FINE_STEPS = 5 * TMI_STEPS_PER_PX / 2 };
 
-/* How far outwards from (u, v) the edge lies that should be there, in modules: where the gray value passes the
- * middle of what is `span` modules inside and outside. Blur is symmetric, so that this holds for blurred edges.
- * Where that is more than the blur can be, the place is halved in first. */
-static float edge_offset(const tmi_view *view, const tmi_homography *map, bool within, float u, float v,
-                         tmi_point normal, float span, float *contrast, uint32_t *reads)
+static tmi_place halfway(tmi_place a, tmi_place b)
 {
-    const float du = span * normal.x, dv = span * normal.y;
-    tmi_point in = tmi_project(map, u - du, v - dv), out = tmi_project(map, u + du, v + dv);
-    float inside = tmi_sample_at(view, in, within), outside = tmi_sample_at(view, out, within);
-    const float middle = 0.5f * (inside + outside), rise = outside - inside;
-    float from = -span, to = span, length = real_max(real_abs(out.x - in.x), real_abs(out.y - in.y));
-    *contrast = rise;
-    *reads += 3;
-    if (length < fine_px) {
-        const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
-        const float offset = rise != 0 ? 2 * span * (middle - tmi_sample_at(view, at, within)) / rise : 0;
-        return real_max(-span, real_min(span, offset));
+    return (tmi_place){(a.x + b.x) / 2, (a.y + b.y) / 2};
+}
+
+/* Along the axis in which it is more. */
+static uint32_t steps_apart(tmi_place a, tmi_place b)
+{
+    const uint32_t x = a.x > b.x ? a.x - b.x : b.x - a.x, y = a.y > b.y ? a.y - b.y : b.y - a.y;
+    return x > y ? x : y;
+}
+
+/* Where the gray value between two places passes the middle of what it is at both ends: -1 at `in`, 1 at `out`. Blur
+ * is symmetric, so that this holds for blurred edges. Where that is more than the blur can be, the place is halved
+ * in first. */
+static float middle_between(const tmi_view *view, tmi_place in, tmi_place out, int32_t inside, int32_t outside,
+                            uint32_t *reads)
+{
+    const int32_t middle = (inside + outside) / 2;
+    const uint32_t wide = steps_apart(in, out);
+    const bool rises = outside > inside;
+    float from = -1, length = 2;
+    ++*reads;
+    if (wide < FINE_STEPS) {
+        const float bend = (float)(middle - tmi_interpolate(view, halfway(in, out)));
+        return real_max(-1, real_min(1, 2 * bend / (float)(outside - inside)));
     }
-    for (; length > 0.5f * fine_px; length *= 0.5f) {
-        const tmi_point at = {0.5f * (in.x + out.x), 0.5f * (in.y + out.y)};
-        const float value = tmi_sample_at(view, at, within);
+    for (uint32_t left = wide; left > FINE_STEPS / 2; left /= 2) {
+        const tmi_place at = halfway(in, out);
+        const int32_t value = tmi_interpolate(view, at);
         ++*reads;
-        if ((value - middle) * rise > 0) {
+        length *= 0.5f;
+        if (rises ? value > middle : value < middle) {
             out = at;
             outside = value;
-            to = 0.5f * (from + to);
         } else {
             in = at;
             inside = value;
-            from = 0.5f * (from + to);
+            from += length;
         }
     }
-    return outside != inside ? from + (to - from) * (middle - inside) / (outside - inside) : 0;
+    return outside != inside ? from + length * (float)(middle - inside) / (float)(outside - inside) : 0;
+}
+
+/* One side of a ring as the map has it, in steps of the interpolation times w: its middle, one module along it, and
+ * as far outwards as is looked for its edge. */
+typedef struct ring_side {
+    float middle[3], along[3], outwards[3];
+} ring_side;
+
+static ring_side side_of(const tmi_homography *map, float u, float v, bool upright, float outwards)
+{
+    const float scale[3] = {TMI_STEPS_PER_PX, TMI_STEPS_PER_PX, 1};
+    ring_side side;
+    for (int k = 0; k < 3; k++) {
+        const float *h = &map->h[3 * k];
+        const float here = k < 2 ? h[2] : 1;
+        side.middle[k] = scale[k] * (h[0] * u + h[1] * v + here);
+        side.along[k] = scale[k] * (upright ? h[1] : h[0]);
+        side.outwards[k] = scale[k] * outwards * (upright ? h[0] : h[1]);
+    }
+    return side;
+}
+
+static tmi_place place_at(const tmi_view *view, float x_steps, float y_steps, bool within)
+{
+    return within ? tmi_place_within(x_steps, y_steps) : tmi_nearest_place(view, x_steps, y_steps);
+}
+
+/* Weighted sums over places x on a line at which y was measured. */
+typedef struct line_sums {
+    float n, x, xx, y, xy;
+} line_sums;
+
+/* Gathers how far outwards the edge lies from where the map has it, 1 being as far as is looked, all along a side of
+ * that many modules to both sides of its middle. What lies outside of it has to be lighter (sign: 1) or darker (-1)
+ * by contrast_min, in which edges are weighed. */
+static line_sums measure_side(const tmi_view *view, const ring_side *side, int half_length, bool within, float sign,
+                              float contrast_min, uint32_t *reads)
+{
+    const float *m = side->middle, *a = side->along, *o = side->outwards;
+    const float per_gray = sign * view->sign / (TMI_STEPS_PER_PX * TMI_STEPS_PER_PX);
+    line_sums sums = {0};
+    for (int k = -half_length; k <= half_length; k++) {
+        const float x = (float)k, w = 1 / (m[2] + x * a[2]);
+        const float at_x = (m[0] + x * a[0]) * w, at_y = (m[1] + x * a[1]) * w;
+        const float go_x = (o[0] - at_x * o[2]) * w, go_y = (o[1] - at_y * o[2]) * w;
+        const tmi_place in = place_at(view, at_x - go_x, at_y - go_y, within);
+        const tmi_place out = place_at(view, at_x + go_x, at_y + go_y, within);
+        const int32_t inside = tmi_interpolate(view, in), outside = tmi_interpolate(view, out);
+        const float contrast = per_gray * (float)(outside - inside);
+        *reads += 2;
+        if (!(contrast > contrast_min))
+            continue;
+        const float weighted = contrast * middle_between(view, in, out, inside, outside, reads);
+        sums.n += contrast;
+        sums.x += contrast * x;
+        sums.xx += contrast * x * x;
+        sums.y += weighted;
+        sums.xy += weighted * x;
+    }
+    return sums;
+}
+
+/* The equations y = p0 + p1 * distance + p2 * x of a side's edges. */
+static void add_side(tmi_normal *n, const line_sums *s, float distance)
+{
+    n->a00 += s->n;
+    n->a01 += s->n * distance;
+    n->a02 += s->x;
+    n->a11 += s->n * distance * distance;
+    n->a12 += s->x * distance;
+    n->a22 += s->xx;
+    n->b0 += s->y;
+    n->b1 += s->y * distance;
+    n->b2 += s->xy;
 }
 
 bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u0, float span, float contrast_min,
                         tmi_offsets *out, uint32_t *reads)
 {
-    static const tmi_point normal[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     const float most = 3.5f + span;
     const bool within = tmi_rectangle_is_within(view, map, u0 - most, -most, u0 + most, most);
-    tmi_normal shift_u = {0}, shift_v = {0};
-    for (int ring = 0; ring < 3; ring++) {
-        const float r = 1.5f + (float)ring, sign = ring == 1 ? -1.0f : 1.0f;
-        for (int along = -1 - ring; along <= 1 + ring; along++)
-            for (int side = 0; side < 4; side++) {
-                const tmi_point n = normal[side];
-                const float u = n.x != 0 ? n.x * r : (float)along, v = n.x != 0 ? (float)along : n.y * r;
-                float contrast;
-                const float offset = edge_offset(view, map, within, u0 + u, v, n, span, &contrast, reads);
-                contrast *= sign; /* what lies outside of the light ring is darker */
-                if (contrast <= contrast_min)
-                    continue;
-                if (n.x != 0)
-                    tmi_normal_add(&shift_u, 1, u, v, n.x * offset, contrast);
-                else
-                    tmi_normal_add(&shift_v, 1, u, v, n.y * offset, contrast);
-            }
-    }
-    return tmi_normal_solve(&shift_u, out->u) && tmi_normal_solve(&shift_v, out->v);
+    tmi_normal shift[2] = {0}; /* of v, by upper and lower sides; and of u, by upright ones */
+    for (int ring = 0; ring < 3; ring++)
+        for (int k = 0; k < 4; k++) {
+            const bool upright = k & 1;
+            const float outwards = k & 2 ? -1.0f : 1.0f, distance = outwards * (1.5f + (float)ring);
+            const ring_side side = upright ? side_of(map, u0 + distance, 0, true, outwards * span)
+                                           : side_of(map, u0, distance, false, outwards * span);
+            const line_sums sums =
+                measure_side(view, &side, 1 + ring, within, ring == 1 ? -1.0f : 1.0f, contrast_min, reads);
+            const line_sums signed_sums = {sums.n, sums.x, sums.xx, outwards * span * sums.y, outwards * span * sums.xy};
+            add_side(&shift[upright], &signed_sums, distance);
+        }
+    float by_v[3], by_u[3];
+    if (!tmi_normal_solve(&shift[0], by_v) || !tmi_normal_solve(&shift[1], by_u))
+        return false;
+    *out = (tmi_offsets){{by_u[0], by_u[1], by_u[2]}, {by_v[0], by_v[2], by_v[1]}};
+    return true;
 }
 
 float tmi_offsets_size(const tmi_offsets *by)

@@ -208,9 +208,10 @@ static float mean_inside(const tmi_view *view, tmi_point first, tmi_point along,
     const uint32_t along_x = steps_of(along.x), along_y = steps_of(along.y);
     const uint32_t across_x = steps_of(across.x), across_y = steps_of(across.y);
     return tmi_gray(view,
-                    tmi_interpolate(view, x, y) + tmi_interpolate(view, x + along_x, y + along_y) +
-                        tmi_interpolate(view, x + across_x, y + across_y) +
-                        tmi_interpolate(view, x + along_x + across_x, y + along_y + across_y),
+                    tmi_interpolate(view, (tmi_place){x, y}) +
+                        tmi_interpolate(view, (tmi_place){x + along_x, y + along_y}) +
+                        tmi_interpolate(view, (tmi_place){x + across_x, y + across_y}) +
+                        tmi_interpolate(view, (tmi_place){x + along_x + across_x, y + along_y + across_y}),
                     4);
 }
 

@@ -26,12 +26,15 @@ enum { TMI_SMALLEST_SIDE = 8 };
 /* Places are interpolated between pixels in steps of 1/256 px. */
 enum { TMI_STEPS_PER_PX = 256 };
 
-/* Bilinear interpolation at a place in steps, its pixel and the next ones within the image; 65536 times the gray. */
-static inline int32_t tmi_interpolate(const tmi_view *view, uint32_t x_steps, uint32_t y_steps)
+typedef struct tmi_place {
+    uint32_t x, y; /* in steps */
+} tmi_place;
+
+/* Bilinear interpolation at a place of which the image holds the pixel and the next ones; 65536 times the gray. */
+static inline int32_t tmi_interpolate(const tmi_view *view, tmi_place at)
 {
-    const int32_t part_x = (int32_t)(x_steps % TMI_STEPS_PER_PX), part_y = (int32_t)(y_steps % TMI_STEPS_PER_PX);
-    const uint8_t *p =
-        view->pixels + (ptrdiff_t)(y_steps / TMI_STEPS_PER_PX) * view->stride + x_steps / TMI_STEPS_PER_PX;
+    const int32_t part_x = (int32_t)(at.x % TMI_STEPS_PER_PX), part_y = (int32_t)(at.y % TMI_STEPS_PER_PX);
+    const uint8_t *p = view->pixels + (ptrdiff_t)(at.y / TMI_STEPS_PER_PX) * view->stride + at.x / TMI_STEPS_PER_PX;
     const uint8_t *q = p + view->stride;
     const int32_t top = TMI_STEPS_PER_PX * p[0] + part_x * (p[1] - p[0]);
     const int32_t low = TMI_STEPS_PER_PX * q[0] + part_x * (q[1] - q[0]);
@@ -57,20 +60,33 @@ static inline bool tmi_is_within(const tmi_view *view, tmi_point at)
     return at.x >= 0 && at.y >= 0 && at.x <= tmi_last_place(view->width) && at.y <= tmi_last_place(view->height);
 }
 
+/* The place at (x, y), in steps, which lies within the image. */
+static inline tmi_place tmi_place_within(float x_steps, float y_steps)
+{
+    return (tmi_place){(uint32_t)(int32_t)x_steps, (uint32_t)(int32_t)y_steps};
+}
+
+/* The place within the image that is nearest to (x, y), in steps: outside of it the border pixels go on. */
+static inline tmi_place tmi_nearest_place(const tmi_view *view, float x_steps, float y_steps)
+{
+    const float right = TMI_STEPS_PER_PX * tmi_last_place(view->width);
+    const float bottom = TMI_STEPS_PER_PX * tmi_last_place(view->height);
+    const float x = x_steps < right ? x_steps : right; /* a NaN, too, ends up within */
+    const float y = y_steps < bottom ? y_steps : bottom;
+    return tmi_place_within(x > 0 ? x : 0, y > 0 ? y : 0);
+}
+
 /* Bilinear interpolation at a place within the image. */
 static inline float tmi_sample_within(const tmi_view *view, float x, float y)
 {
-    return tmi_gray(view, tmi_interpolate(view, (uint32_t)(int32_t)(TMI_STEPS_PER_PX * x),
-                                          (uint32_t)(int32_t)(TMI_STEPS_PER_PX * y)), 1);
+    return tmi_gray(view, tmi_interpolate(view, tmi_place_within(TMI_STEPS_PER_PX * x, TMI_STEPS_PER_PX * y)), 1);
 }
 
-/* Bilinear interpolation anywhere; outside of the image the border pixels go on. */
+/* Bilinear interpolation anywhere. */
 static inline float tmi_sample(const tmi_view *view, float x, float y)
 {
-    const float right = tmi_last_place(view->width), bottom = tmi_last_place(view->height);
-    x = x < right ? x : right; /* a NaN, too, ends up within */
-    y = y < bottom ? y : bottom;
-    return tmi_sample_within(view, x > 0 ? x : 0, y > 0 ? y : 0);
+    return tmi_gray(view, tmi_interpolate(view, tmi_nearest_place(view, TMI_STEPS_PER_PX * x, TMI_STEPS_PER_PX * y)),
+                    1);
 }
 
 /* The one or the other. */
