@@ -353,11 +353,11 @@ typedef struct line_sums {
 /* Gathers how far outwards the edge lies from where the map has it, 1 being as far as is looked, all along a side of
  * that many modules to both sides of its middle. What lies outside of it has to be lighter (sign: 1) or darker (-1)
  * by contrast_min, in which edges are weighed. */
-static line_sums measure_side(const tmi_view *view, const ring_side *side, int half_length, bool within, float sign,
-                              float contrast_min, uint32_t *reads)
+TMI_ONCE static line_sums measure_side(const tmi_view *view, const ring_side *side, int half_length, bool within,
+                                       float sign, float contrast_min, uint32_t *reads)
 {
     const float *m = side->middle, *a = side->along, *o = side->outwards;
-    const float per_gray = sign * view->sign / (TMI_STEPS_PER_PX * TMI_STEPS_PER_PX);
+    const float per_gray = sign * view->sign / TMI_ONE_GRAY;
     line_sums sums = {0};
     for (int k = -half_length; k <= half_length; k++) {
         const float x = (float)k, w = 1 / (m[2] + x * a[2]);
@@ -408,7 +408,8 @@ bool tmi_finder_offsets(const tmi_view *view, const tmi_homography *map, float u
                                            : side_of(map, u0, distance, false, outwards * span);
             const line_sums sums =
                 measure_side(view, &side, 1 + ring, within, ring == 1 ? -1.0f : 1.0f, contrast_min, reads);
-            const line_sums signed_sums = {sums.n, sums.x, sums.xx, outwards * span * sums.y, outwards * span * sums.xy};
+            const float unit = outwards * span;
+            const line_sums signed_sums = {sums.n, sums.x, sums.xx, unit * sums.y, unit * sums.xy};
             add_side(&shift[upright], &signed_sums, distance);
         }
     float by_v[3], by_u[3];
@@ -444,52 +445,94 @@ static bool fit_step(const tmi_view *view, tmi_finder *f, float span, float *mov
 
 /* ---- Score --------------------------------------------------------------------------------------------- */
 
-/* Correlation of samples at all (u, v) made of `count` coordinates with the ideal pattern. */
-static void score_raster(const tmi_view *view, tmi_finder *finder, const int8_t *coordinates, int count,
-                         uint32_t *reads)
+/* Sums over samples of the pattern, of which so many should be dark and light; 65536 times the gray. */
+typedef struct pattern_sums {
+    float darks, lights, dark, light, squares;
+} pattern_sums;
+
+TMI_ONCE static void set_score(const tmi_view *view, const pattern_sums *s, tmi_finder *finder)
 {
-    float dark = 0, light = 0, squares = 0;
-    int darks = 0, lights = 0;
-    for (int j = 0; j < count; j++)
-        for (int i = 0; i < count; i++) {
-            const int u = coordinates[i], v = coordinates[j];
-            const tmi_point at = tmi_at(finder, (float)u, (float)v);
-            const float value = tmi_sample(view, at.x, at.y);
-            squares += value * value;
-            if (tmi_finder_is_dark(u, v)) {
-                dark += value;
-                darks++;
-            } else {
-                light += value;
-                lights++;
-            }
-        }
-    *reads += (uint32_t)(darks + lights);
-    const float n = (float)(darks + lights), sum = dark + light;
-    const float variance = squares - sum * sum / n;
-    finder->dark = dark / (float)darks;
-    finder->light = light / (float)lights;
-    const float difference = finder->light - finder->dark;
-    const float explained = difference * real_sqrt((float)darks * (float)lights / n);
+    const float n = s->darks + s->lights, sum = s->dark + s->light, per_gray = view->sign / TMI_ONE_GRAY;
+    const float variance = (s->squares - sum * sum / n) * (per_gray * per_gray);
+    finder->dark = s->dark / s->darks * per_gray + view->offset;
+    finder->light = s->light / s->lights * per_gray + view->offset;
+    const float explained = (finder->light - finder->dark) * real_sqrt(s->darks * s->lights / n);
     finder->score = variance > 1 ? explained / real_sqrt(variance) : 0;
+}
+
+/* Samples the modules up to so many from the finder's centre along and across, row by row. */
+TMI_ONCE static void sample_modules(const tmi_view *view, const tmi_finder *f, int along, int across, float *out,
+                                    uint32_t *reads)
+{
+    const tmi_homography map = tmi_finder_map(f);
+    const bool within =
+        tmi_rectangle_is_within(view, &map, (float)-along, (float)-across, (float)along, (float)across);
+    const float go_x = TMI_STEPS_PER_PX * f->right.x, go_y = TMI_STEPS_PER_PX * f->right.y;
+    for (int v = -across; v <= across; v++) {
+        const tmi_point middle = tmi_at(f, 0, (float)v);
+        const float x = TMI_STEPS_PER_PX * middle.x, y = TMI_STEPS_PER_PX * middle.y;
+        for (int u = -along; u <= along; u++) {
+            const tmi_place at = place_at(view, x + (float)u * go_x, y + (float)u * go_y, within);
+            *out++ = (float)tmi_interpolate(view, at);
+        }
+    }
+    *reads += (uint32_t)((2 * along + 1) * (2 * across + 1));
 }
 
 void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
 {
-    static const int8_t all[9] = {-4, -3, -2, -1, 0, 1, 2, 3, 4};
-    score_raster(view, finder, all, 9, reads);
+    float value[9 * 9], ring[5] = {0}, squares = 0; /* sums over the modules that many from the centre */
+    sample_modules(view, finder, 4, 4, value, reads);
+    for (int i = 0; i < 9 * 9; i++) {
+        const int u = i % 9 - 4, v = i / 9 - 4, column = u < 0 ? -u : u, row = v < 0 ? -v : v;
+        ring[row > column ? row : column] += value[i];
+        squares += value[i] * value[i];
+    }
+    const pattern_sums sums = {33, 48, ring[0] + ring[1] + ring[3], ring[2] + ring[4], squares};
+    set_score(view, &sums, finder);
 }
 
-void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+/* How far from a guess a finder is looked for, modules; and the samples that takes. */
+enum { SEEK_ALONG = 4, SEEK_ACROSS = 1, WIDE = 2 * (SEEK_ALONG + 3) + 1, HIGH = 2 * (SEEK_ACROSS + 3) + 1 };
+
+/* Sums over 25 modules of a finder whose centre is there among the samples: of its core one, eight and sixteen of the
+ * rings around. */
+TMI_ONCE static pattern_sums quick_sums(const float *centre)
 {
     static const int8_t few[5] = {-3, -2, 0, 2, 3};
-    score_raster(view, finder, few, 5, reads);
+    float light = 0, sum = 0, squares = 0;
+    for (int j = 0; j < 5; j++)
+        for (int i = 0; i < 5; i++) {
+            const float value = centre[few[j] * WIDE + few[i]];
+            sum += value;
+            squares += value * value;
+            if (!tmi_finder_is_dark(few[i], few[j]))
+                light += value;
+        }
+    return (pattern_sums){17, 8, sum - light, light, squares};
+}
+
+void tmi_finder_seek(const tmi_view *view, tmi_finder *finder, uint32_t *reads)
+{
+    float value[WIDE * HIGH];
+    sample_modules(view, finder, SEEK_ALONG + 3, SEEK_ACROSS + 3, value, reads);
+    const tmi_finder guess = *finder;
+    finder->score = -1;
+    for (int v = -SEEK_ACROSS; v <= SEEK_ACROSS; v++)
+        for (int u = -SEEK_ALONG; u <= SEEK_ALONG; u++) {
+            tmi_finder tried = guess;
+            tried.centre = tmi_at(&guess, (float)u, (float)v);
+            const pattern_sums sums = quick_sums(&value[(HIGH / 2 + v) * WIDE + WIDE / 2 + u]);
+            set_score(view, &sums, &tried);
+            if (tried.score > finder->score && tried.light > tried.dark)
+                *finder = tried;
+        }
 }
 
 /* ---- Entrances ----------------------------------------------------------------------------------------- */
 
 /* Modules; a fit that moved less is done. */
-static const float settled = 0.1f;
+static const float settled = 0.09f;
 
 /* Correlation that a square told from its outline has to have before it is fitted: well below what it needs then. */
 static const float outline_score = 0.36f;

@@ -30,8 +30,9 @@ bool tmi_finder_refine(const tmi_view *view, tmi_finder *finder, uint32_t *reads
  * and light. */
 void tmi_finder_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
 
-/* The same from 25 modules, for comparing many places. */
-void tmi_finder_quick_score(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
+/* Moves a finder to where, up to four modules along and one across, 25 of its modules correlate best with the ideal
+ * pattern; sets score, dark and light from these. */
+void tmi_finder_seek(const tmi_view *view, tmi_finder *finder, uint32_t *reads);
 
 /* The print of a finder: whether the module (u, v) from its centre is dark. Its margin is light. */
 static inline bool tmi_finder_is_dark(int u, int v)

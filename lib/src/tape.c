@@ -215,18 +215,9 @@ static tmi_finder foretell(const tmi_tape *tape, int i, int direction)
 /* The best place for the foretold finder, within a few modules. */
 static bool search(tmi_tape *tape, tmi_finder *finder)
 {
-    const tmi_finder guess = *finder;
-    const float area = guess.right.x * guess.down.y - guess.right.y * guess.down.x;
-    const float score_min = (area < 2 ? 0.6f : foretold_part) * guess.score;
-    finder->score = -1;
-    for (int v = -1; v <= 1; v++)
-        for (int u = -4; u <= 4; u++) {
-            tmi_finder tried = guess;
-            tried.centre = tmi_at(&guess, (float)u, (float)v);
-            tmi_finder_quick_score(tape->view, &tried, &tape->stats->work);
-            if (tried.score > finder->score && tried.light > tried.dark)
-                *finder = tried;
-        }
+    const float area = finder->right.x * finder->down.y - finder->right.y * finder->down.x;
+    const float score_min = (area < 2 ? 0.6f : foretold_part) * finder->score;
+    tmi_finder_seek(tape->view, finder, &tape->stats->work);
     return finder->score > 0.5f * score_min && tmi_finder_refine(tape->view, finder, &tape->stats->work) &&
            finder->score >= score_min;
 }

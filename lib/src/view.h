@@ -24,7 +24,7 @@ typedef struct tmi_view {
 enum { TMI_SMALLEST_SIDE = 8 };
 
 /* Places are interpolated between pixels in steps of 1/256 px. */
-enum { TMI_STEPS_PER_PX = 256 };
+enum { TMI_STEPS_PER_PX = 256, TMI_ONE_GRAY = TMI_STEPS_PER_PX * TMI_STEPS_PER_PX };
 
 typedef struct tmi_place {
     uint32_t x, y; /* in steps */
@@ -44,7 +44,7 @@ static inline int32_t tmi_interpolate(const tmi_view *view, tmi_place at)
 /* The gray value that is the mean of so many interpolated ones. */
 static inline float tmi_gray(const tmi_view *view, int32_t sum, int count)
 {
-    const float scale = 1 / ((float)(TMI_STEPS_PER_PX * TMI_STEPS_PER_PX) * (float)count);
+    const float scale = 1 / ((float)TMI_ONE_GRAY * (float)count);
     return (float)sum * (view->sign * scale) + view->offset;
 }
 

@@ -220,13 +220,27 @@ static void scores_tell_right_from_wrong_places(void **state)
     assert_int_equal(reads, 81);
     tmi_finder_score(&seen.view, &aside, &reads);
     assert_true(f.score > 0.9f && aside.score < 0.7f);
-    tmi_finder quick = f;
-    tmi_finder_quick_score(&seen.view, &quick, &reads);
-    assert_true(quick.score > 0.9f);
     const tmi_view negative = {.pixels = seen.pixels, .width = SIDE, .height = SIDE, .stride = SIDE, .invert = 255,
                                .sign = -1, .offset = 255};
     tmi_finder_score(&negative, &inverted, &reads);
     assert_true(inverted.score < -0.9f);
+}
+
+static void seeking_finds_what_is_modules_off(void **state)
+{
+    (void)state;
+    render_pattern(4, 30, 0, 0, 0.5);
+    const tmi_finder there = true_finder();
+    for (int v = -1; v <= 1; v++)
+        for (int u = -4; u <= 4; u++) {
+            uint32_t reads = 0;
+            tmi_finder f = there;
+            f.centre = tmi_at(&there, (float)u, (float)v);
+            tmi_finder_seek(&seen.view, &f, &reads);
+            assert_int_equal(reads, 135);
+            assert_true(f.score > 0.9f && f.light > f.dark + 100);
+            assert_true(hypot((double)f.centre.x - seen.x, (double)f.centre.y - seen.y) < 0.01);
+        }
 }
 
 /* ---- Rejected ----------------------------------------------------------------------------------------------- */
@@ -340,6 +354,7 @@ int main(void)
         cmocka_unit_test(located_through_blur),
         cmocka_unit_test(refining_pulls_back_what_is_off),
         cmocka_unit_test(scores_tell_right_from_wrong_places),
+        cmocka_unit_test(seeking_finds_what_is_modules_off),
         cmocka_unit_test(what_is_no_pattern_is_not_believed),
         cmocka_unit_test(rays_that_meet_no_ring_cost_little),
         cmocka_unit_test(patterns_at_the_border_break_nothing),
