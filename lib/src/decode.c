@@ -273,6 +273,8 @@ static void find_tapes(workspace *w, const tmi_view *view, const tapemark_config
     w->tape.work_max = part_of(config->work_budget, TRY_PERCENT);
     tmi_strokes_clear(&w->strokes);
     scan_lines(&w->tape, &w->strokes, &tiles, scan_work);
+    if (w->strokes.contrast_min > 0 && w->strokes.contrast_min > tmi_tiles_noise(&tiles))
+        stats->limits |= TAPEMARK_LIMIT_CANDIDATES;
     w->tape.work_max = part_of(config->work_budget, GROW_PERCENT);
     tmi_tape_link(&w->tape);
     tmi_tape_drop_strokes(&w->tape, &w->strokes);
@@ -342,8 +344,6 @@ tapemark_status tapemark_decode(const tapemark_image *image, const tapemark_conf
         result->stats.segments++;
         kept = tmi_segment_read(&reader, &w->segment, finders, rows.goes_on);
     }
-    if (w->strokes.overflow)
-        result->stats.limits |= TAPEMARK_LIMIT_CANDIDATES;
     reader.kept_max = 0;
     tmi_far_read(&reader, &w->strokes, &w->far);
     return status_of(result);

@@ -16,7 +16,6 @@ void tmi_strokes_clear(tmi_strokes *strokes)
 {
     strokes->count = 0;
     strokes->contrast_min = 0;
-    strokes->overflow = false;
 }
 
 /* Makes room by leaving out what has less than the mean contrast. */
@@ -26,7 +25,6 @@ static void thin_out(tmi_strokes *strokes)
     for (int i = 0; i < strokes->count; i++)
         sum += strokes->at[i].contrast;
     strokes->contrast_min = sum / strokes->count + 1;
-    strokes->overflow = true;
     for (int i = 0; i < strokes->count; i++)
         if (strokes->at[i].contrast >= strokes->contrast_min)
             strokes->at[kept++] = strokes->at[i];

@@ -39,8 +39,7 @@ static inline tmi_point tmi_stroke_at(const tmi_stroke *s)
 
 typedef struct tmi_strokes {
     int count;
-    int contrast_min;
-    bool overflow; /* there were more than fit, and those of least contrast were left out */
+    int contrast_min; /* 0, or what is needed since there were more than fit and the weakest were left out */
     tmi_stroke at[TMI_MAX_STROKES];
 } tmi_strokes;
 

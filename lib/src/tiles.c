@@ -97,14 +97,33 @@ static void usual_bar(tmi_tiles *tiles, uint8_t contrast_min)
     tiles->lightest = lightest;
 }
 
-/* The contrast from which tiles are scanned where the usual bar leaves many more than `active_max`; 0 where not. */
-static int raised_bar(const tmi_tiles *tiles, uint32_t active_max)
+/* Where a quarter of the tiles shows no more contrast than that, it is noise. Of 128 pixels the extremes are some five
+ * times its standard deviation apart, seldom eight; what differs by less than that cannot be read in it. Where light
+ * is dim and everything has texture, that may be a tape's contrast: more than this quarter is not taken for noise. */
+static const float noise_part = 1.6f;
+enum { CALM_MAX = 16 };
+
+TMI_ONCE uint8_t tmi_tiles_noise(const tmi_tiles *tiles)
+{
+    uint32_t histogram[256] = {0}, calm = 0;
+    for (int32_t y = 0; y < tiles->rows; y++)
+        for (ptrdiff_t i = y * tiles->pitch; i < y * tiles->pitch + tiles->columns; i++)
+            histogram[tiles->high[i] - tiles->low[i]]++;
+    int contrast = 0;
+    while (contrast < CALM_MAX && 4 * (calm += histogram[contrast]) < (uint32_t)(tiles->rows * tiles->columns))
+        contrast++;
+    return (uint8_t)(noise_part * (float)contrast);
+}
+
+/* The contrast from which tiles are scanned where those of at least `least` are many more than `active_max`; 0 where
+ * they are not. */
+TMI_ONCE static int raised_bar(const tmi_tiles *tiles, int least, uint32_t active_max)
 {
     uint32_t histogram[256] = {0}, above = 0;
     for (int32_t y = 0; y < tiles->rows; y++)
         for (ptrdiff_t i = y * tiles->pitch; i < y * tiles->pitch + tiles->columns; i++) {
             const int contrast = tiles->high[i] - tiles->low[i];
-            if (tmi_is_contrast(tiles, i, contrast))
+            if (contrast >= least && tmi_is_contrast(tiles, i, contrast))
                 histogram[contrast]++;
         }
     int bar = 256;
@@ -161,13 +180,16 @@ bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_mi
         tile_row_extremes(view, y, tiles->low + y * tiles->pitch, tiles->high + y * tiles->pitch);
 
     usual_bar(tiles, contrast_min);
-    const int raised = raised_bar(tiles, active_max);
+    const bool many = raised_bar(tiles, 0, active_max / 2) > 0;
+    const int noise = many ? tmi_tiles_noise(tiles) : 0;
+    const int raised = many ? raised_bar(tiles, noise, active_max) : 0;
+    const int least = raised > noise ? raised : noise;
     tiles->active = 0;
     for (int32_t y = 0; y < tiles->rows; y++) {
         const uint8_t *low = tiles->low + y * tiles->pitch, *high = tiles->high + y * tiles->pitch;
         for (int32_t x = 0; x < tiles->columns; x++) {
             const int contrast = high[x] - low[x];
-            if (contrast < raised || !tmi_is_contrast(tiles, y * tiles->pitch + x, contrast))
+            if (contrast < least || !tmi_is_contrast(tiles, y * tiles->pitch + x, contrast))
                 continue;
             tiles->swing[y * tiles->pitch + x] = edge_swing(low + x, high + x, tiles->pitch);
             tiles->active++;

@@ -121,7 +121,25 @@ static void finds_nothing_in_noise(void **state)
     }
 }
 
-/* Noise alone is looked at, for it may be all the contrast that there is; beside a print it is what it is. */
+/* What a camera sends of a blank wall: that nothing is there, and not that it was too much to look at. */
+static void sensor_noise_on_a_blank_wall_is_nothing(void **state)
+{
+    (void)state;
+    enum { WIDTH = 640, HEIGHT = 480 };
+    static uint8_t pixels[WIDTH * HEIGHT];
+    static const double deviations[] = {0.5, 0.7, 0.85, 1, 1.5, 2, 3};
+    for (size_t s = 0; s < COUNT_OF(deviations); s++) {
+        random_source source = {s + 1};
+        for (size_t i = 0; i < sizeof pixels; i++)
+            pixels[i] = (uint8_t)(130.5 + deviations[s] * (double)random_normal(&source));
+        const decoding *got = decode_pixels(pixels, WIDTH, HEIGHT, NULL);
+        if (got->status != TAPEMARK_NOTHING_FOUND || got->result.stats.limits != 0)
+            fail_msg("noise of %g: %s, limits %x", deviations[s], tapemark_status_text(got->status),
+                     (unsigned)got->result.stats.limits);
+    }
+}
+
+/* Noise that the blank wall's bound does not tell, for there is too much of it, is known beside a print. */
 static void noise_beside_something_of_contrast_is_left_alone(void **state)
 {
     (void)state;
@@ -131,12 +149,11 @@ static void noise_beside_something_of_contrast_is_left_alone(void **state)
     for (int with_square = 0; with_square < 2; with_square++) {
         random_source source = {7};
         for (size_t i = 0; i < sizeof pixels; i++)
-            pixels[i] = (uint8_t)(105.5f + 3.6f * random_normal(&source));
+            pixels[i] = (uint8_t)(105.5f + (with_square ? 3.6f : 6) * random_normal(&source));
         for (int y = 0; with_square && y < 40; y++)
             memset(pixels + y * SIDE, y < 20 ? 0 : 255, 40);
         const decoding *got = decode_pixels(pixels, SIDE, SIDE, NULL);
         assert_no_marker(got);
-        assert_in_range(got->result.stats.pattern_hits, 50, 100000);
         tried[with_square] = got->result.stats.finders_tried;
     }
     if (!(tried[0] > 20 && 4 * tried[1] < tried[0]))
@@ -194,6 +211,7 @@ int main(void)
         cmocka_unit_test(a_small_budget_bounds_the_work_on_clutter),
         cmocka_unit_test(a_sheet_of_tapes_stays_within_bounds),
         cmocka_unit_test(finds_nothing_in_noise),
+        cmocka_unit_test(sensor_noise_on_a_blank_wall_is_nothing),
         cmocka_unit_test(noise_beside_something_of_contrast_is_left_alone),
         cmocka_unit_test(finds_nothing_in_checkerboards),
         cmocka_unit_test(finds_nothing_in_odd_sizes),

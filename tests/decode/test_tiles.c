@@ -200,12 +200,12 @@ static void tiles_at_the_border_are_as_others(void **state)
 
 /* ---- Too much contrast -------------------------------------------------------------------------------------- */
 
-/* Tile number i has a contrast of 10 + i: the bar leaves those with the most. */
+/* Tile number i has a contrast of 10 + i, and as many are flat: the bar leaves those with the most. */
 static void the_bar_rises_where_too_many_are_active(void **state)
 {
     (void)state;
     enum { TILES = 100 };
-    test_image image = image_of(TILES * TILE, TILE, TILES * TILE);
+    test_image image = image_of(2 * TILES * TILE, TILE, 2 * TILES * TILE);
     for (int32_t i = 0; i < TILES; i++)
         *pixel(&image, i * TILE + 5, 4) = (uint8_t)(110 + i);
     for (uint32_t most = 1; most <= 120; most += 17) {
@@ -216,6 +216,24 @@ static void the_bar_rises_where_too_many_are_active(void **state)
             assert_int_equal(image.tiles.swing[i] > 0, i >= TILES - (int32_t)image.tiles.active);
         assert_bits_agree(&image.tiles);
     }
+    drop(&image);
+}
+
+/* All tiles but two have the contrast of noise: they are left out, and that is no limit. Where they fit in, as in a
+ * small picture, they are scanned. */
+static void noise_is_left_out_where_there_is_much(void **state)
+{
+    (void)state;
+    enum { TILES = 100 };
+    test_image image = image_of(TILES * TILE, TILE, TILES * TILE);
+    for (int32_t i = 0; i < TILES; i++)
+        *pixel(&image, i * TILE + 5, 4) = (uint8_t)(100 + (i % 50 == 7 ? 20 : 8 + i % 5));
+    build(&image, 5, 60);
+    assert_int_equal(image.tiles.active, 2);
+    assert_true(image.tiles.swing[7] > 0 && image.tiles.swing[57] > 0);
+    assert_false(image.raised);
+    build(&image, 5, 2 * TILES);
+    assert_int_equal(image.tiles.active, TILES);
     drop(&image);
 }
 
@@ -243,6 +261,7 @@ int main(void)
         cmocka_unit_test(the_swing_follows_the_contrast_around),
         cmocka_unit_test(tiles_at_the_border_are_as_others),
         cmocka_unit_test(the_bar_rises_where_too_many_are_active),
+        cmocka_unit_test(noise_is_left_out_where_there_is_much),
         cmocka_unit_test(all_alike_does_not_mean_none),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
