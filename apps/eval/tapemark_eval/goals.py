@@ -23,6 +23,13 @@ class _Measured:
         return min((share for value, share in self.points(experiment, "tapemark", hits, all_of) if value <= up_to),
                    default=None)
 
+    def wrong_ids(self, experiments):
+        """Of all steps; None where one of them was left out."""
+        if any(name not in self._experiments for name in experiments):
+            return None
+        return sum(step["systems"]["tapemark"]["wrong"]
+                   for name in experiments for step in self._experiments[name]["steps"])
+
     def ratio(self):
         known = [findings.slowest_ratio(self._report, name) for name in self._experiments]
         return max((each for each in known if each is not None), default=None)
@@ -50,6 +57,19 @@ def _light_row(numbers):
     others = "STag: –" if stag is None else f"STag: {stag[0]:g} to {stag[1]:g}"
     wider = own is not None and (stag is None or (own[0] <= stag[0] and own[1] >= stag[1] and own != stag))
     return ("exposures read (≥ 90 %)", others, "wider than STag", text, wider)
+
+
+def _wrong_row(what, others, wrong):
+    return (what, others, "0", "–" if wrong is None else str(wrong), wrong == 0)
+
+
+def _tape_free_row(report):
+    tape_free = report.get("no-tape", {}).get("tapemark")
+    if tape_free is None:
+        return _wrong_row("wrong ids in 100 000 frames without a tape", "–", None)
+    peers = report["no-tape"]["peers"].items()
+    others = "; ".join(f"{name}: {each['wrong_ids']} in {each['frames']}" for name, each in peers)
+    return _wrong_row(f"wrong ids in {tape_free['frames']} frames without a tape", others, tape_free["wrong_ids"])
 
 
 def _time_row(numbers):
@@ -80,5 +100,8 @@ def rows(report):
         _share_row("defocus of 0.5 modules: CMs read", "–", 0.9, numbers.share("defocus", 0.5)),
         _share_row("images with an id where a whole CM is left, 0 to 80 % hidden", "–", 1,
                    numbers.least("occlusion", 0.8, "id", "images")),
+        _wrong_row("cells flipped, dirt, tears, to 30 %: wrong ids", "–",
+                   numbers.wrong_ids(("cells", "dirt", "tears"))),
+        _tape_free_row(report),
         _time_row(numbers),
     ]
