@@ -10,12 +10,23 @@ static marker_place place_of(bool placed, float x_m, float y_m, float dx, float 
     return (marker_place){placed, (double)x_m, (double)y_m, placed && (dx != 0 || dy != 0), direction_deg};
 }
 
-marker_place marker_place_of_cm(const tapemark_map *map, int32_t id)
+/* A TM in which a CM was read either agrees with the map or contradicts it. */
+static bool is_in_doubt(const tapemark_map *map, const tapemark_result *result, const tapemark_cm *cm)
 {
-    size_t index;
-    if (map == NULL || tapemark_map_find_cm(map, id, &index) != TAPEMARK_OK)
+    tapemark_tm_place located = {.agreement = TAPEMARK_AGREES};
+    if (cm->tm < 0)
+        return false;
+    tapemark_map_locate_tm(map, result, (size_t)cm->tm, &located);
+    return located.agreement != TAPEMARK_AGREES;
+}
+
+marker_place marker_place_of_cm(const tapemark_map *map, const tapemark_result *result, size_t index)
+{
+    const tapemark_cm *read = &result->cms[index];
+    size_t found;
+    if (map == NULL || tapemark_map_find_cm(map, read->id, &found) != TAPEMARK_OK || is_in_doubt(map, result, read))
         return (marker_place){0};
-    const tapemark_map_cm *cm = &map->cms[index];
+    const tapemark_map_cm *cm = &map->cms[found];
     return place_of(true, cm->x_m, cm->y_m, cm->dx, cm->dy);
 }
 

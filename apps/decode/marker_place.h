@@ -11,8 +11,9 @@ typedef struct marker_place {
     double direction_deg;  /* clockwise on the plan from its x axis, 0 to 360 */
 } marker_place;
 
-/* `map` may be NULL: nothing is known then. */
-marker_place marker_place_of_cm(const tapemark_map *map, int32_t id);
+/* `map` may be NULL: nothing is known then. A CM is worth no more than the TM it was read in: where that contradicts
+ * the map, it has no place either. */
+marker_place marker_place_of_cm(const tapemark_map *map, const tapemark_result *result, size_t index);
 
 /* A TM that contradicts the map has no place. */
 marker_place marker_place_of_tm(const tapemark_map *map, const tapemark_result *result, size_t index,

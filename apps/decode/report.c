@@ -89,15 +89,16 @@ static void add_json_tm_place(text_buffer *buffer, const frame_report *report, s
         text_buffer_add(buffer, ",\"read_backwards\":true");
 }
 
-static void add_json_cm(text_buffer *buffer, const frame_report *report, const tapemark_cm *cm)
+static void add_json_cm(text_buffer *buffer, const frame_report *report, size_t index)
 {
+    const tapemark_cm *cm = &report->result->cms[index];
     text_buffer_add(buffer, "{\"type\":\"cm\",\"id\":%d", cm->id);
     add_json_corners(buffer, cm->corners);
     add_json_member(buffer, "confidence", (double)cm->confidence, SHARE_DECIMALS);
     text_buffer_add(buffer, ",\"doubtful\":%d,\"corrected\":%d", cm->doubtful_cells, cm->corrected_cells);
     if (cm->tm >= 0)
         text_buffer_add(buffer, ",\"tm\":%d,\"slot\":%d", cm->tm, cm->slot);
-    add_json_place(buffer, marker_place_of_cm(report->map, cm->id));
+    add_json_place(buffer, marker_place_of_cm(report->map, report->result, index));
     text_buffer_add(buffer, "}");
 }
 
@@ -145,7 +146,7 @@ void report_add_json(text_buffer *buffer, const frame_report *report)
     for (size_t i = 0; i < result->cm_count; i++) {
         if (i > 0)
             text_buffer_add(buffer, ",");
-        add_json_cm(buffer, report, &result->cms[i]);
+        add_json_cm(buffer, report, i);
     }
     for (size_t i = 0; i < result->tm_count; i++) {
         if (i + result->cm_count > 0)
@@ -224,7 +225,7 @@ void report_add_csv(text_buffer *buffer, const frame_report *report)
         add_csv_start(buffer, report);
         text_buffer_add(buffer, ",cm,%d,,", cm->id);
         add_csv_numbers(buffer, cm->corners, cm->confidence);
-        add_csv_place(buffer, marker_place_of_cm(report->map, cm->id));
+        add_csv_place(buffer, marker_place_of_cm(report->map, result, i));
         text_buffer_add(buffer, ",,\n");
     }
     for (size_t i = 0; i < result->tm_count; i++) {
@@ -273,7 +274,7 @@ void report_add_text(text_buffer *buffer, const frame_report *report)
         const tapemark_cm *cm = &result->cms[i];
         snprintf(what, sizeof what, "CM %d", cm->id);
         add_text_line(buffer, report, what, cm->corners, cm->confidence);
-        add_text_place(buffer, marker_place_of_cm(report->map, cm->id));
+        add_text_place(buffer, marker_place_of_cm(report->map, result, i));
         text_buffer_add(buffer, "\n");
     }
     for (size_t i = 0; i < result->tm_count; i++) {

@@ -231,16 +231,6 @@ static void add_tm(frame_records *output, const selection *chosen, size_t tm, ui
     }
 }
 
-/* What a CM says is worth no more than the TM it was read in. */
-static bool is_in_doubt(const selection *chosen, const tapemark_cm *cm)
-{
-    tapemark_tm_place located;
-    if (chosen->map == NULL || cm->tm < 0)
-        return false;
-    tapemark_map_locate_tm(chosen->map, &chosen->reading->result, (size_t)cm->tm, &located);
-    return tm_flags(located.agreement) == TAPEMARK_TM_CONTRADICTS;
-}
-
 static void add_cm(frame_records *output, const selection *chosen, size_t cm, uint16_t seq)
 {
     const tapemark_cm *read = &chosen->reading->result.cms[cm];
@@ -255,8 +245,8 @@ static void add_cm(frame_records *output, const selection *chosen, size_t cm, ui
         record->tm = (uint8_t)chosen->index_of_tm[read->tm];
         record->slot = (uint8_t)read->slot;
     }
-    marker_place hangs = marker_place_of_cm(chosen->map, read->id);
-    if (hangs.placed && !is_in_doubt(chosen, read)) {
+    marker_place hangs = marker_place_of_cm(chosen->map, &chosen->reading->result, cm);
+    if (hangs.placed) {
         record->flags |= TAPEMARK_CM_PLACED;
         add_place(output, seq, record->index, &hangs);
     }

@@ -1,4 +1,4 @@
-/* What a row of CMs looks like from afar: the share of dark along it, blurred as a good camera blurs it. */
+/* What a row of CMs looks like from afar: the share of dark along it, blurred as the camera blurs it. */
 #ifndef TAPEMARK_ROW_PRINT_H
 #define TAPEMARK_ROW_PRINT_H
 

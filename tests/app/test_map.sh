@@ -48,6 +48,7 @@ otherwise() {
     run 0 --map otherwise.json tm.pgm
     grep -q "{\"type\":\"tm\",\"code\":\"100\".*\"vote\":[0-9.]*,\"agrees\":false,\"reason\":\"$reason\"}" out ||
         fail "not $reason"
+    ! grep -q '"type":"cm",[^}]*"x":' out || fail "$reason: a CM in it has a place"
 }
 otherwise other_code -e 's/"100"/"1000"/'
 otherwise cm_without_tm -e 's/"100"/" "/; s/"n_tm":"1"/"n_tm":" "/'
