@@ -186,7 +186,7 @@ typedef struct tapemark_cm {
 typedef struct tapemark_tm {
     char code[TAPEMARK_TM_MAX_CMS + 1];  /* '1' for a light CM, '0' for a dark one, NUL at the end */
     uint8_t length;                      /* number of CMs, 3 to TAPEMARK_TM_MAX_CMS */
-    uint8_t unknown_cms;                 /* CMs in it that were read as ids that are not to be: another plan's tape? */
+    uint8_t unknown_cms;                 /* CMs in it read as ids that are not to be: another plan's tape? */
     bool directed;                       /* false: it may as well read backwards; corners follow the code */
     float vote;                          /* share of the scan lines that agree with the code, 0 to 1 */
     float confidence;                    /* 0 to 1 */

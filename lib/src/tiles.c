@@ -97,9 +97,9 @@ static void usual_bar(tmi_tiles *tiles, uint8_t contrast_min)
     tiles->lightest = lightest;
 }
 
-/* Where a quarter of the tiles shows no more contrast than that, it is noise. Of 128 pixels the extremes are some five
- * times its standard deviation apart, seldom eight; what differs by less than that cannot be read in it. Where light
- * is dim and everything has texture, that may be a tape's contrast: more than this quarter is not taken for noise. */
+/* What a quarter of the tiles have at most is the contrast of noise: the extremes of 128 pixels are some five times
+ * its standard deviation apart, seldom eight, and what differs by less than that cannot be read in it. In dim light,
+ * where everything has texture, that may be a tape's contrast: no more than CALM_MAX is taken for noise's. */
 static const float noise_part = 1.6f;
 enum { CALM_MAX = 16 };
 

@@ -26,8 +26,8 @@ typedef struct tmi_tiles {
 /* What is darker than this part of the lightest pixel lies in deep shade. */
 enum { SHADE_PARTS = 8 };
 
-/* Whether that is contrast at a tile's place in the planes. In deep shade the bar, a part of the contrast in the light,
- * would leave out all there is; and noise, which grows with the light, is least there. */
+/* Whether that is contrast at a tile's place in the planes. In deep shade the bar, a part of the contrast in the
+ * light, would leave out all there is; and noise, which grows with the light, is least there. */
 static inline bool tmi_is_contrast(const tmi_tiles *tiles, ptrdiff_t i, int contrast)
 {
     return contrast >= tiles->contrast_min &&
@@ -38,8 +38,8 @@ static inline bool tmi_is_contrast(const tmi_tiles *tiles, ptrdiff_t i, int cont
 uint8_t tmi_tiles_noise(const tmi_tiles *tiles);
 
 /* Lays everything out in `memory`, which is aligned for uint32_t and as large as TAPEMARK_WORKSPACE_BYTES has it
- * beyond the fixed part, and fills it. About `active_max` tiles stay active: where many have enough contrast, what may be
- * noise is left out first; where there are more still, the bar is raised. Returns whether that was needed. */
+ * beyond the fixed part, and fills it. About `active_max` tiles stay active: where many have enough contrast, what
+ * may be noise is left out first; where there are more still, the bar is raised. Returns whether that was needed. */
 bool tmi_tiles_build(tmi_tiles *tiles, const tmi_view *view, uint8_t contrast_min, uint32_t active_max, void *memory);
 
 #endif
